@@ -62,7 +62,7 @@ class RemoteAvatar(Protocol):
     def change(self, order: AvatarOrder) -> dict[str, float]:
         """Bring the avatar to the changes of an order; return the angle of each held axis.
 
-        Raises CannotChange if the avatar has nothing to change.
+        Raises CannotChange if the avatar cannot be changed.
         """
 
     def frame(self, t_s: float, pose: Pose, fingers: FloatArray | None = None) -> Pose:
@@ -72,7 +72,7 @@ class RemoteAvatar(Protocol):
         """
 
     def touches(self) -> tuple[Bools, Bools]:
-        """Return the avatar's touches at the last frame, and what is near enough to keep a touch.
+        """Return the avatar's touches at the last frame, and what is near enough to keep one.
 
         Two bool arrays (S, P), surfaces of the task by parts; (0, P) without boxes.
         """

@@ -230,8 +230,8 @@ class Headset:
     async def _request_avatar(self, state: HeadsetState) -> None:
         """Request the physics avatar, if there is one, for the recorded stature.
 
-        All bodies of the study are requested at once: they are there when a block begins, and
-        neither when nor which one is requested says which is worn next.
+        All bodies of the study are requested at once: they are ready when a block begins, and
+        neither the time nor the kind of a request reveals which is worn next.
         """
         if self._physics is None:
             return
@@ -251,7 +251,7 @@ class Headset:
             return
         self._is_unchanged = False
         if order.revision == self._revision:
-            # It was reported with another body: to report it again would tell that it is another.
+            # Already reported with another body; a second report would reveal the new body.
             with suppress(CannotChange):
                 self._avatar.change(order)
             return

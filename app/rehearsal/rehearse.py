@@ -46,7 +46,7 @@ class RehearsalPlan:
     """The plan of a rehearsal. `token` None logs in with `password`. `speed` 1 is real time.
 
     `physics`: use a physics avatar, in a copy of the study if that has another one. `fingers`: the
-    participant's fingers are recorded; their movement is generated. `redo`: the
+    participant's fingers are recorded: those of the capture, or generated ones. `redo`: the
     phase that is repeated half-way through; `withdraw_during`: the one in which the participant
     withdraws. Phases count from 1, in the order of the visit.
     """

@@ -7,8 +7,8 @@ interpreter's lock, so several threads can run compiled code in parallel.
 `compiled_fused` allows fused multiply-add, for code that runs at every frame. Sums keep their order
 here too, so that equal frames give equal results.
 
-`compiled_checked` checks every index, for code that reads what a stranger sent: an IndexError takes
-the place of a read beside the array.
+`compiled_checked` checks every index, for code that reads data from strangers: it raises an
+IndexError instead of reading outside the array.
 
 Each compiles at the first call, or loads what an earlier process compiled. Applying a decorator
 loads the compiler (half a second), so kernels are kept in modules of their own, imported when first
@@ -32,7 +32,7 @@ def compiled_fused(function: _F) -> _F:
 
 
 def compiled_checked(function: _F) -> _F:
-    """Compile with a check of every index; it raises IndexError."""
+    """Compile with a check of every index; an index out of range raises IndexError."""
     return _cached(function, boundscheck=True)
 
 

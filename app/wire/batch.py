@@ -9,7 +9,7 @@
     12      u32      phase_id the frames belong to, 0 outside phases
     16      u64      seq of the first frame; seqs are consecutive within an epoch
     24      u16      frame count n, 1..1024
-    26      u16      values per frame w: 91 of a body, 120 of fingers
+    26      u16      values per frame w: 91 for a body, 120 for fingers
     28      u32      CRC-32 of everything after the header
     32      f64      active time of the phase at the last frame, s
     40      f64      client monotonic time when the batch was closed, s
@@ -185,7 +185,7 @@ def encode_batch(
     active_s: float,
     closed_at_s: float,
 ) -> bytes:
-    """Encode frames: `times_s` (n,), `flags` (n,), `values` (n, 91), of fingers (n, 120)."""
+    """Encode frames: `times_s` (n,), `flags` (n,), `values` (n, 91), or (n, 120) for fingers."""
     n, w = values.shape
     expected = stream.values_per_frame
     if w != expected or times_s.shape != (n,) or flags.shape != (n,):

@@ -238,10 +238,10 @@ class MotorOrder(Message):
 class AvatarOrder(Message):
     """How the avatar differs from its configuration now; what is left out is as configured.
 
-    It is always the whole: a client brings its body to it and reports `revision`, which rises with
-    every change. `colliders`: body part -> simple, mesh or none. `layers`: pairs that collide, or
-    no longer do. `held_rad`: axes in a cast -> angle, or null for the angle at which the axis is
-    when the client first learns of it. `motors`: axes with other gains.
+    It lists all changes in force: a client applies them to its body and reports `revision`, which
+    rises with every change. `colliders`: body part -> simple, mesh or none. `layers`: pairs that
+    collide, or that no longer do. `held_rad`: axes in a cast -> angle, or null for the angle at
+    which the axis is when the client first learns of it. `motors`: axes with other gains.
     """
 
     revision: int

@@ -35,7 +35,7 @@ class Wardrobe:
 
 
 class Welcome:
-    """What a welcome says of the study's bodies."""
+    """The part of a welcome that names the study's bodies."""
 
     bodies = ("tall", "taller")
     on_disconnect = "pause"

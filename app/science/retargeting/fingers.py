@@ -7,8 +7,8 @@ the capture's bone does, relative to the T-pose, so its rotation in the part abo
 
 turned into the direction in which the body faces. In the T-pose fingers point outwards and thumbs
 45 degrees forward; each bone is brought there from its rest by the shortest turn, after the hand.
-How a rig's fingers are bent at rest therefore does not matter, only how they are rolled about
-themselves. Parts that a capture lacks stay as in the T-pose.
+How a rig's fingers are bent at rest therefore does not matter; only how they are rolled about their
+own axes does. Parts that a capture lacks stay as in the T-pose.
 """
 
 from math import sqrt

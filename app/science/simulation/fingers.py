@@ -1,4 +1,4 @@
-"""Generate finger movement for a simulated participant. No person was recorded for it.
+"""Generate finger movement for a simulated participant. It was not recorded from a person.
 
 Each hand goes through gestures in random order: fist, pinch, thumb opposition, an open and a
 relaxed hand. A gesture is a set of joint angles within the limits of a human hand, the same on both

@@ -5,8 +5,8 @@
 
 They are read in a worker process with the limits that the server's has: 120 s for each, and 3 GiB.
 The command prints how many of each kind were read and refused, the slowest, and the greatest memory
-that the process had; it fails at the first that does anything else. Number n is always damaged in
-the same way, so `--only n` repeats one.
+that the process had; it fails at the first model with another outcome. Number n is always damaged
+in the same way, so `--only n` repeats one.
 
 The models are made by code, plain and compressed by meshopt or Draco; where the folder of shared
 data is present, one in six is a published one.
@@ -251,7 +251,7 @@ _KINDS: dict[str, Callable[[Random, bytes], bytes]] = {
 
 
 def attempt(data: bytes, limits: Limits | None = None) -> Attempt:
-    """Read and measure a model as the server does; what is no refusal is raised."""
+    """Read and measure a model as the server does; raise any error that is not a refusal."""
     start = time.perf_counter()
     outcome: Outcome = "read"
     reason = ""
@@ -279,7 +279,7 @@ def _say(line: str) -> None:
 
 
 def main() -> int:
-    """Read damaged models and print what became of them; return 1 if one was not refused well."""
+    """Read damaged models and print the outcomes; return 1 if one failed in any other way."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--long", action="store_true", help="3,000 models instead of 200")
     parser.add_argument("--only", type=int, help="the number of a single model")

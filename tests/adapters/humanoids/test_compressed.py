@@ -50,7 +50,7 @@ def test_a_compressed_model_is_the_same_body(
 
 
 def test_textures_of_any_kind_do_not_hinder_reading() -> None:
-    """A file that needs WebP and KTX2 textures has its body read; unknown images have no size."""
+    """The body of a file with WebP and KTX2 textures is read; unknown images have no size."""
 
     def edit(document: dict[str, Any]) -> None:
         document["extensionsRequired"] = ["EXT_texture_webp", "KHR_texture_basisu"]
@@ -85,7 +85,7 @@ def test_validated_avatars_are_read(name: str, stature_m: float, vertices: int) 
 @pytest.mark.parametrize("channel", [None, 0, 1, 2, 2 + 16 * 5])
 @pytest.mark.parametrize("stride", [4, 16, 256])
 def test_vertices_survive_compression(stride: int, channel: int | None) -> None:
-    """Elements of any size are what they were: even, slowly changing, and random ones."""
+    """Elements of any size, be they constant, slowly changing or random, survive compression."""
     rng = np.random.default_rng(stride)
     for count in (1, 17, 300):
         for table in (
@@ -109,7 +109,7 @@ def test_exponents_become_numbers() -> None:
 
 @pytest.mark.parametrize("stride", [2, 4])
 def test_indices_survive_compression(stride: int) -> None:
-    """Sequences of indices are what they were; triangles may begin at another corner."""
+    """Sequences of indices survive compression; triangles may begin at another corner."""
     rng = np.random.default_rng(1)
     size = "<u2" if stride == 2 else "<u4"
     grid = [

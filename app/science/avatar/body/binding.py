@@ -1,4 +1,4 @@
-"""How the nodes of a model's file follow the parts of its body.
+"""Let the nodes of a model's file follow the parts of its body.
 
 A body moves by its parts, a file's mesh by its nodes. A binding says which node each part moves,
 and how it lies in the part's frame: origin in the part's joint, axes parallel to the world in the
@@ -51,7 +51,7 @@ class Binding:
     part_from_node: FloatArray
 
     def scaled(self, stature_m: float) -> "Binding":
-        """Return the binding of the same body in another stature."""
+        """Return the binding of the same body at another stature."""
         factor = stature_m / self.stature_m
         scaled = self.part_from_node.copy()
         scaled[:, :3] *= factor

@@ -52,14 +52,14 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class TPosed:
-    """A humanoid in the T-pose, and how its bones came there.
+    """A humanoid in the T-pose, and how its bones were brought there.
 
     Attributes:
         humanoid: the model in the T-pose.
         moves: (J, 4, 4) of each bone of the rig: the similarity from where the file has the bone
             and what is fixed to it, in the file's world, to where they are in the T-pose; with
             rotation, change of unit and translation.
-        arms_turned_deg: how far the upper arm that was further from it was turned into the T-pose,
+        arms_turned_deg: how far the upper arm that was farther from the T-pose was turned into it,
             relative to the hips.
     """
 

@@ -1,6 +1,6 @@
 """Move a skin with the nodes of its file: linear blend skinning.
 
-Each vertex is the weighted sum of where its bones would take it,
+Each vertex is the weighted sum of the positions to which its bones would move it,
 
     v_world = sum_k w_k  world_from_bone_k  bone_from_mesh_k  v,
 
@@ -19,7 +19,7 @@ from app.science.avatar.body.binding import Binding
 from app.science.rotations import FloatArray
 
 _AT_ONCE = 65_536
-"""Vertices transformed together; each needs a matrix meanwhile."""
+"""The number of vertices transformed at once; each needs a matrix during that time."""
 IndexArray = npt.NDArray[np.int64]
 
 

@@ -1,12 +1,12 @@
-"""The settings of a running avatar that can be changed without building its model again.
+"""Describe the settings of a running avatar that can change without building its model again.
 
 A configuration says how an avatar is built. Gravity, collisions, casts and the motors' gains can
-also be changed while it runs: by a study for one of its phases, or by an operator. The settings in
-force are always a whole (`RunningSettings`), and a running model is given the whole, never a single
-step: so it does not matter in which order changes were made, or whether one was missed.
+also be changed while it runs: by a study for one of its phases, or by an operator. A running
+model is always given all settings in force (`RunningSettings`), never a single change: so it does
+not matter in which order changes were made, or whether one was missed.
 
 A cast holds the axes of a body group. It holds them at given angles, or where they are when it is
-put on (an angle of None), and axes that the configuration locks have no hinge and are not affected.
+put on (an angle of None). Axes that the configuration locks have no hinge and are not affected.
 """
 
 from collections.abc import Mapping
@@ -28,7 +28,7 @@ class RunningSettings:
         self_collision: whether body parts collide with each other, as `layers` says.
         colliders: body part -> the collider that it uses.
         layers: the pairs of collision layers that collide.
-        held_rad: held axis -> its angle, or None for the angle at which it is when it is held.
+        held_rad: held axis -> its angle, or None for its angle when the cast is put on.
         axes: driven axis -> its gains and greatest torque.
     """
 

@@ -1,6 +1,6 @@
-"""A figure of our own: skinned bodies made by code around the 52 parts.
+"""Make skinned bodies by code, around the 52 parts.
 
-`make_mannequin` gives the skin of a person of any proportions, in the T-pose; a writer of a file
+`make_mannequin` makes the skin of a person of any proportions, in the T-pose; the writer of a file
 format stores it.
 """
 

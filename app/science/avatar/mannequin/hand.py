@@ -1,4 +1,4 @@
-"""Sew the right hand: a flat tube from the wrist to the webs, four fingers on its end, the thumb.
+"""Sew the right hand: a flat tube from wrist to webs, with four fingers on its end, and the thumb.
 
 A ring of the palm has 28 points: 13 on the back of the hand from the index finger's side to the
 little finger's, one at the little finger's side, 13 on the palm and one at the index finger's side.
@@ -142,7 +142,7 @@ def _shape_palm(
 
 
 def _finger_edges(places: dict[str, FloatArray], thick: float) -> list[float]:
-    """Return the five places across the palm between which the four fingers lie."""
+    """Return the five positions across the palm between which the four fingers lie."""
     middles = [places[f"Right{finger}Proximal"][2] for finger in FINGERS[1:]]
     between = [(a + b) / 2.0 for a, b in pairwise(middles)]
     first = middles[0] - 0.92 * _FINGERS["Index"][0] * thick
@@ -201,7 +201,7 @@ def _sew_finger(
 def _finger_rings(
     start: float, middle: float, end: float, tip: float, radius: float
 ) -> list[tuple[float, float, float]]:
-    """Return place along the finger, half breadth and half height of its rings."""
+    """Return the position along the finger, half breadth and half height of each ring."""
     first, second, third = middle - start, end - middle, tip - end
     rows = (
         (start + 0.22 * first, 1.0, 1.0),

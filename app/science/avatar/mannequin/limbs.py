@@ -1,4 +1,4 @@
-"""Sew arms, legs and feet: rings around the bones, each with its own reach to four sides."""
+"""Sew arms, legs and feet: rings around the bones, each with its own extent in four directions."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,8 +1,8 @@
-"""Make a figure of one's own: a closed skin around the 52 parts of a person of any proportions.
+"""Make a figure: a closed skin around the 52 parts of a person of any proportions.
 
 Trunk, limbs, head, feet and hands are sewn from sections around the bones; where limbs begin the
-skin is smoothed; then every point gets the parts that move it. All this is a sequence of fixed
-steps without any choice by size, so the same proportions give the same figure everywhere.
+skin is smoothed; then every point is assigned the parts that move it. The steps are fixed and
+involve no choice by size, so the same proportions give the same figure everywhere.
 """
 
 from dataclasses import dataclass
@@ -84,7 +84,7 @@ def _where_limbs_begin(
     arm: list[IndexArray],
     leg: list[IndexArray],
 ) -> FloatArray:
-    """Return how strongly each point is smoothed, (V, 1)."""
+    """Return how strongly each point is smoothed, (V, 1): most where limbs begin."""
     strength = np.zeros(int(mesh.sewn[-1]) + 1)
     (left, right), (low, high) = ARM_COLUMNS, ARM_ROWS
     strength[grid[low - 2 : high + 3, left - 2 : right + 3]] = 0.25

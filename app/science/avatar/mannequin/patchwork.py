@@ -58,7 +58,7 @@ class Patchwork:
     """The half of a mesh while it is sewn.
 
     Attributes:
-        region: the region to which points belong that are added from now on.
+        region: the region of the points that are added from now on.
         tone: the tone of the triangles that are sewn from now on.
     """
 
@@ -101,7 +101,7 @@ class Patchwork:
         at_low = at_high = 0
         while at_low < steps_low or at_high < steps_high:
             hole = steps_low == steps_high and at_low in skip
-            # The loop that is behind goes on; both are compared at the middle of their next step.
+            # Advance the loop that is behind; both are compared at the middle of their next step.
             low_first = (2 * at_low + 1) * steps_high <= (2 * at_high + 1) * steps_low
             if at_high == steps_high or (at_low < steps_low and low_first):
                 triangle = (low[at_low], low[at_low + 1], high[at_high])

@@ -1,10 +1,10 @@
 """The forms of men and women, as sections through trunk, head, limbs and feet.
 
-All lengths are millimetres of a person 1.75 m tall and become longer and shorter with the stature;
+All lengths are in millimetres for a person 1.75 m tall and scale with the stature;
 heights follow the joints, so that they fit people of measured proportions. The average form, that
 of the neutral body, is the mean of both, as in the tables of masses.
 
-Estimated by us, by eye and from our own bodies: forms for a mannequin, not for anthropometry. No
+We estimated the forms by eye and from our own bodies, for a mannequin, not for anthropometry. No
 published number of ours depends on them.
 """
 
@@ -119,7 +119,7 @@ _FOOT = (
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """The form of one population; tables as above, in metres for a stature.
+    """The form of one population at a stature: the tables above, in metres.
 
     Attributes:
         trunk: (R, 9) sections of the trunk.

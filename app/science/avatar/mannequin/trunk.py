@@ -47,7 +47,7 @@ class Heights:
         self._standard = np.array(_STANDARD) * body.stature_m
 
     def __call__(self, heights: FloatArray) -> FloatArray:
-        """Return where the person has what the tables have at these heights."""
+        """Return the person's heights that correspond to these heights of the tables."""
         moved: FloatArray = np.interp(heights, self._standard, self._actual)
         return moved
 
@@ -162,7 +162,7 @@ def _shape_chest(points: FloatArray, form: Form, unit: float, heights: Heights) 
         points[..., 2] -= np.where(points[..., 2] < 0.0, bump, 0.0)
 
 
-# The face: middle of each form (x, y), how far it stands out, how wide and how high it is.
+# The face: middle of each form (x, y), how far it stands out, its width and its height.
 _FACE = (
     (0.0, 1529.0, 5.0, 21.0, 12.0),  # chin
     (0.0, 1545.5, -2.5, 26.0, 5.5),  # below the lip
@@ -176,7 +176,7 @@ _FACE = (
 
 
 def _shape_face(points: FloatArray, form: Form, unit: float) -> None:
-    """Let brow, nose, lips, chin and ears stand out, and the eyes lie deep."""
+    """Make brow, nose, lips, chin and ears stand out, and set the eyes deep."""
     front = points[..., 2] < 0.0
     x, y = points[..., 0] / unit, points[..., 1] / unit
     out = np.zeros_like(x)

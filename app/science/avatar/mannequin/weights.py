@@ -1,9 +1,9 @@
 """Compute which parts move each point of the skin, and by how much.
 
-Along every chain of bones a point belongs to the bone it lies beside; around a joint its weight
-passes smoothly to the next bone, over about the thickness of the limb. Where limbs and fingers
-begin, the weights are then averaged with those of neighbouring points, so that the skin there
-follows both sides.
+Along every chain of bones a point belongs to the bone that it lies beside; around a joint its
+weight passes smoothly to the next bone, over about the thickness of the limb. Where limbs and
+fingers begin, the weights are then averaged with those of neighbouring points, so that the skin
+there follows both sides.
 """
 
 from collections.abc import Sequence
@@ -40,7 +40,7 @@ def weights_of(mesh: Sewn, body: Proportions) -> tuple[IndexArray, FloatArray]:
     rows, columns = neighbours(mesh.triangles, len(whole))
     for _ in range(_ROUNDS):
         whole += strength * (averages(rows, columns, whole) - whole)
-    # Sums in another order differ in the last digit: both sides get those of the right one.
+    # Sums in another order differ in the last digit, so both sides get the right side's sums.
     whole[other] = whole[mesh.mirrored[other]][:, _OTHER_SIDE]
     whole[on_seam] = (whole[on_seam] + whole[on_seam][:, _OTHER_SIDE]) / 2.0
     return _strongest(whole)
@@ -188,7 +188,7 @@ class _Shares:
 def _chain(at: FloatArray, joints: Sequence[float], widths: Sequence[float]) -> FloatArray:
     """Return the shares of a chain of bones, (N, joints + 1), at places along it.
 
-    From one bone to the next the share passes over twice the joint's width.
+    The share passes from one bone to the next over twice the joint's width.
     """
     passed = [np.ones_like(at)]
     for joint, width in zip(joints, widths, strict=True):

@@ -12,8 +12,8 @@ limits move at `CAST_SPEED_RAD_S`: a limit that jumped would hit the limb like a
 built from a configuration with the group locked has no hinge there at all; holding is for a cast
 that is put on while the body runs.
 
-A motor's gains are the parameters of its actuator. They are those of the model exactly, whether it
-was built with them or given them later.
+A motor's gains are the parameters of its actuator. They have exactly the same effect, whether the
+model was built with them or given them later.
 
 The boxes of a scene can be shown and hidden (`Boxes`). A study has boxes for the hands and boxes
 for the feet, and only those of the current phase are in the room. The body passes through hidden
@@ -78,7 +78,7 @@ class Switches:
 
     @property
     def held_rad(self) -> dict[str, float]:
-        """Return the angle of each held axis, at which it is or to which its cast moves it."""
+        """Return the angle of each held axis: where it is held, or to where its cast moves it."""
         return {**self._held, **self._goals}
 
     def apply(
@@ -240,7 +240,7 @@ class Switches:
         unknown = [name for name in axes if name not in self._table.names]
         if unknown:
             raise SimulationError(
-                f"The axis {unknown[0]} has no hinge, so it cannot be held and has no motor."
+                f"The axis {unknown[0]} has no hinge, so it has no motor and cannot be held."
             )
 
     def _check(self, part: str) -> None:

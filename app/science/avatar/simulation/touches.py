@@ -2,8 +2,8 @@
 
 A box is touched if the simulation found a contact in its last step: the hand rests against the
 panel because the panel stops it. A mark on the floor stops nothing; it is touched by parts whose
-shapes overlap it. A part that is not among those to be reported counts as the part above it: so
-fingers count as the hand they belong to, unless they are reported themselves.
+shapes overlap it. A part that is not reported itself counts as the part above it, so fingers
+count as the hand they belong to unless they are reported.
 
 A touch continues until the part is farther away than a margin (hysteresis, as in `tasks.contacts`);
 so for parts that no longer touch, the distance is computed.

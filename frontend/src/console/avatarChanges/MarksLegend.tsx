@@ -1,4 +1,4 @@
-/** What the marks around parts of a body mean; nothing if none is shown. */
+/** Explains the marks around parts of a body; empty if there are none. */
 import { type BodyMarks, MARK_COLOURS } from "@shared/stage/marks";
 import type { CSSProperties, JSX } from "react";
 import { useTexts } from "../i18n";

@@ -1,4 +1,4 @@
-/** Texts of changes to an avatar that runs: by a study for a phase, or by an operator. */
+/** Texts about changes to a running avatar: by a study for a phase, or by an operator. */
 export const avatarChangesEn = {
   "avatarChanges.title": "Avatar settings",
   "avatarChanges.none": "As the study configures them.",

@@ -1,4 +1,4 @@
-/** Say in words what was changed about an avatar that runs. */
+/** Say in words what was changed about a running avatar. */
 import type { AvatarChanges } from "@shared/api/types";
 import { number } from "@shared/format";
 import type { Key, useTexts } from "../i18n";

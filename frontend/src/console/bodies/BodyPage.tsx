@@ -1,4 +1,4 @@
-/** One body: from all sides, what was checked, its name, and who wears it. */
+/** One body from all sides, with its checks, its name, and the studies that use it. */
 import { Button, Title } from "@mantine/core";
 import { type BodyView, bodies } from "@shared/api/bodies";
 import { bytes, dateTime, decimals, number } from "@shared/format";

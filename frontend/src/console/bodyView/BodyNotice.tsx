@@ -1,4 +1,4 @@
-/** What there is to say while a body is loaded, or why it cannot be shown. */
+/** Says that a body is being loaded, or why it cannot be shown. */
 import { Button, Loader } from "@mantine/core";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";

@@ -119,7 +119,7 @@ export function SendingWords({ share }: { readonly share: number }): JSX.Element
   );
 }
 
-/** The server reads a file, without saying how far it is. */
+/** Shows that the server is reading a file; its progress is unknown. */
 export function ReadingWords({ words }: { readonly words: string }): JSX.Element {
   return (
     <>

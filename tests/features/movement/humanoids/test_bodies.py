@@ -34,7 +34,7 @@ def set_columns(lab: Lab, content_hash: str = HASH, **values: object) -> None:
 
 
 def test_a_body_gets_its_name_once(fresh_lab: Lab) -> None:
-    """A name is given once, to one body only, and is on record with its file's hash."""
+    """A name is given once, to one body only, and is recorded with the hash of the body's file."""
     upload(fresh_lab)
     other = upload(fresh_lab, FOUR, "four.vrm").json()["content_hash"]
     assert change(fresh_lab, name="tall", title="The tall one")["name"] == "tall"
@@ -63,7 +63,7 @@ def test_names_of_bodies_are_keys(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_licence_that_restricts_wearing_must_be_confirmed(fresh_lab: Lab) -> None:
-    """A body that only its author may wear is named and configured after that is confirmed.
+    """A body that only its author may wear is named and configured only after a confirmation.
 
     Who confirmed it, and when, is with the body and in the audit trail.
     """

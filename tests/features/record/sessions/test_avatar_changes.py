@@ -40,7 +40,7 @@ class Wearer:
         self.hear(lambda one: one["type"] == "ack" and self.seq in nexts(one))
 
     def hear(self, is_it: Callable[[Json], bool]) -> Json:
-        """Return the next message for which this is true."""
+        """Return the next message for which the function is true."""
         while True:
             message: Json = self.socket.receive_json()
             if is_it(message):

@@ -64,7 +64,7 @@ def test_a_hand_that_is_not_tracked_is_no_fault() -> None:
 
 
 def test_each_finger_part_has_its_own_joint_error(lab: Lab, request: pytest.FixtureRequest) -> None:
-    """A thumb that bends 10 degrees too far has this error, against the delayed command only it."""
+    """A thumb bent 10 degrees too far has that error, the only one against the delayed command."""
     with lab.database.writing() as db:
         session_id = build_session(db, SessionSpec(stable_id(request.node.name)[:12])).id
         phase = db.scalars(

@@ -1,4 +1,4 @@
-"""How well one convex piece a part stands for the skin, and where it does not: holes in a part."""
+"""Tests of how closely one convex piece per part follows the skin; it cannot follow holes."""
 
 import json
 from functools import cache

@@ -1,4 +1,4 @@
-"""Tests of the figures of our own: closed skins with smooth weights around a person's joints."""
+"""Tests of the figures made by code: closed skins with smooth weights around a person's joints."""
 
 from itertools import pairwise
 

@@ -175,7 +175,7 @@ function meshesIn(scene: Object3D): readonly Mesh[] {
   return meshes;
 }
 
-/** The nodes that something hangs on, each after the one it moves with. */
+/** The nodes that a part or a mesh depends on, each after the node that it moves with. */
 function nodesOf(
   binding: BodyBinding,
   scene: Object3D,

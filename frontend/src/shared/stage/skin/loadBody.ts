@@ -21,7 +21,7 @@ interface Held {
 
 const held = new Map<string, Held>();
 
-/** Load a body, or take the one that is loaded; `release` it afterwards. */
+/** Load a body, or take it if it is loaded already; `release` it afterwards. */
 export function takeBody(hash: string): {
   readonly loading: Promise<BodyModel>;
   readonly release: () => void;
@@ -77,7 +77,7 @@ export async function readBody(file: ArrayBuffer, binding: BodyBinding): Promise
   }
 }
 
-/** Load nothing from elsewhere, and pictures as the page's policy allows: as pictures. */
+/** Load nothing from other addresses, and images only as elements, as the page's policy allows. */
 function keepToFile(parser: GLTFParser): void {
   const own = parser as unknown as {
     textureLoader: TextureLoader;

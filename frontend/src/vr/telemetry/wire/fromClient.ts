@@ -81,7 +81,7 @@ const CompletionReport = v.strictObject({
   out_of_order_touches: Count,
 });
 
-/** The avatar follows the changes of this revision, or why it does not; angles of casts. */
+/** Reports that the avatar follows this revision, or why not, with the angles of its casts. */
 const AvatarChangeReport = v.strictObject({
   kind: v.literal("avatar_changes"),
   revision: Count,
