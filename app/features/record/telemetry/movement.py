@@ -38,7 +38,7 @@ class Run:
     """Both streams of one epoch of a phase; times in seconds of the epoch's clock.
 
     `hinges`: those of a physics avatar; None for a delayed copy. `fingers`: the frames of the
-    target's and the actual fingers; None if none were recorded.
+    target's and the actual fingers; None if no run of the phase recorded any.
     """
 
     epoch: int
@@ -67,9 +67,13 @@ class Run:
 
 
 def phase_runs(db: Session, session_id: str, phase_id: int, *, history_s: float) -> list[Run]:
-    """Return the runs of a phase, with target frames from `history_s` before its first frame."""
-    fingers = dict(phase_frames(db, session_id, StreamName.ACTUAL_FINGERS, phase_id))
+    """Return the runs of a phase, with target frames from `history_s` before its first frame.
 
+    If any of them recorded fingers, all have fingers, so that their rotations have one shape; a run
+    that recorded none has no frames of them.
+    """
+    fingers = dict(phase_frames(db, session_id, StreamName.ACTUAL_FINGERS, phase_id))
+    no_fingers = concatenate([], StreamName.ACTUAL_FINGERS) if fingers else None
     hinges = hinges_of(db, session_id, phase_id)
     return [
         Run(
@@ -77,7 +81,7 @@ def phase_runs(db: Session, session_id: str, phase_id: int, *, history_s: float)
             _target(db, session_id, epoch, StreamName.TARGET, actual, history_s),
             actual,
             hinges,
-            _fingers(db, session_id, epoch, fingers.get(epoch), actual, history_s),
+            _fingers(db, session_id, epoch, fingers.get(epoch, no_fingers), actual, history_s),
         )
         for epoch, actual in phase_frames(db, session_id, StreamName.ACTUAL, phase_id)
     ]

@@ -39,7 +39,8 @@ def quality_rows(phase: Phase, runs: Sequence[Run]) -> list[PhaseQuality]:
     target = combine([_quality(run.target, _in_phase(run, run.target)) for run in runs])
     actual = combine([_quality(run.actual, run.actual.active) for run in runs])
     rows = [_row(phase, StreamName.TARGET, target), _row(phase, StreamName.ACTUAL, actual)]
-    fingers = [(run, *run.fingers) for run in runs if run.fingers is not None]
+    # A run without fingers, beside others that have them, has no frames of them.
+    fingers = [(run, *run.fingers) for run in runs if run.fingers and len(run.fingers[1])]
     if fingers:
         target = combine([_of_fingers(one, _in_phase(run, one)) for run, one, _ in fingers])
         actual = combine([_of_fingers(one, one.active) for _, _, one in fingers])

@@ -153,8 +153,9 @@ class Material:
 
     def chosen(self, chosen: FigureFilter) -> "Material":
         """Return the rows that pass a filter, valid or not."""
-        # In a blinded study, filtering by order must not reveal the order of an open session.
-        candidates = self.visible if chosen.order is not None else self.sessions
+        # In a blinded study, a filter by order or body must not reveal that of an open session.
+        reveals = chosen.order is not None or chosen.body is not None
+        candidates = self.visible if reveals else self.sessions
         sessions = _sessions(candidates, chosen)
         ids = set(sessions["session_id"])
         found = self._of(sessions, ids, chosen.limb)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sqlalchemy import select
+from sqlalchemy.orm import Session
 
 from app.features.record.telemetry.encoding import ENCODING, decode_frames, encode_frames
 from app.features.record.telemetry.summaries import summary_rows
@@ -63,16 +64,23 @@ def test_a_hand_that_is_not_tracked_is_no_fault() -> None:
     assert flags.non_unit.tolist() == [False, False, False, True]
 
 
+def hand_task(db: Session, request: pytest.FixtureRequest) -> Phase:
+    """Return the first hand task of a new session."""
+    session_id = build_session(db, SessionSpec(stable_id(request.node.name)[:12])).id
+    phase = db.scalars(
+        select(Phase).where(
+            Phase.session_id == session_id, Phase.limb == "hand", Phase.kind == "task"
+        )
+    ).first()
+    assert phase is not None
+    return phase
+
+
 def test_each_finger_part_has_its_own_joint_error(lab: Lab, request: pytest.FixtureRequest) -> None:
     """A thumb bent 10 degrees too far has that error, the only one against the delayed command."""
     with lab.database.writing() as db:
-        session_id = build_session(db, SessionSpec(stable_id(request.node.name)[:12])).id
-        phase = db.scalars(
-            select(Phase).where(
-                Phase.session_id == session_id, Phase.limb == "hand", Phase.kind == "task"
-            )
-        ).first()
-        assert phase is not None
+        phase = hand_task(db, request)
+        session_id = phase.session_id
         phase.latency_ms = 1000.0 * LATENCY_S
         before = round(HISTORY_S * RATE_HZ)
         times_s = np.arange(before + FRAMES) / RATE_HZ
@@ -113,3 +121,33 @@ def test_each_finger_part_has_its_own_joint_error(lab: Lab, request: pytest.Fixt
     assert quality["actual_fingers"].non_finite == 0
     assert quality["actual_fingers"].frames == FRAMES
     assert len(ERROR_JOINTS) + len(FINGER_PARTS) == len(ERROR_JOINTS_WITH_FINGERS)
+
+
+@pytest.mark.one_engine
+def test_a_phase_is_summarised_although_only_one_run_had_fingers(
+    lab: Lab, request: pytest.FixtureRequest
+) -> None:
+    """A phase has all summaries if the headset restarts without hand tracking in it."""
+    with lab.database.writing() as db:
+        phase = hand_task(db, request)
+        before = round(HISTORY_S * RATE_HZ)
+        times_s = np.arange(before + FRAMES) / RATE_HZ
+        body = made_movement(np.random.default_rng(3))(times_s)
+        fingers = moving_fingers(len(times_s))
+        for epoch in (1, 2):
+            for stream in (StreamName.TARGET, StreamName.ACTUAL):
+                store_stream(db, phase, stream, epoch, times_s, body, before)
+        for stream in (StreamName.TARGET_FINGERS, StreamName.ACTUAL_FINGERS):
+            for own, of in ((slice(0, before), 0), (slice(before, None), phase.phase_id)):
+                seqs = list(range(len(times_s))[own])
+                store_chunks(db, phase.session_id, stream, seqs, fingers[own], phase_id=of)
+        rows = summary_rows(db, phase.session_id, phase.phase_id)
+    counts = {
+        row.joint: (row.samples, row.excluded)
+        for row in rows
+        if isinstance(row, JointErrorRow) and (row.reference, row.axis) == ("present", "angle")
+    }
+    assert counts["Head"] == (2 * FRAMES, 0)
+    assert counts["RightThumbDistal"] == (FRAMES, FRAMES)
+    frames = {row.stream: row.frames for row in rows if isinstance(row, PhaseQuality)}
+    assert (frames["actual"], frames["actual_fingers"]) == (2 * FRAMES, FRAMES)
