@@ -6,8 +6,14 @@ import numpy as np
 
 from app.science.avatar.body import finger_bones
 from app.science.rotations import FloatArray, multiply, rotate
-from app.science.skeleton import FINGERS, JOINT_INDEX, SEGMENTS, Skeleton
-from app.science.skeleton.kinematics import BodySegments, WorldPose
+from app.science.skeleton import (
+    FINGERS,
+    JOINT_INDEX,
+    SEGMENTS,
+    BodySegments,
+    Skeleton,
+    WorldPose,
+)
 
 _SIDES = ("Left", "Right")
 _HANDS = [JOINT_INDEX[f"{side}Hand"] for side in _SIDES]

@@ -9,7 +9,13 @@ from app.science.skeleton.fingers import (
     finger_of,
 )
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES, PARENTS
-from app.science.skeleton.kinematics import Pose, body_part_segments, forward_kinematics
+from app.science.skeleton.kinematics import (
+    BodySegments,
+    Pose,
+    WorldPose,
+    body_part_segments,
+    forward_kinematics,
+)
 from app.science.skeleton.model import Skeleton, SkeletonError, build_skeleton
 from app.science.skeleton.movement import (
     Movement,
@@ -31,10 +37,12 @@ __all__ = [
     "PARENTS",
     "PARTS_PER_HAND",
     "SEGMENTS",
+    "BodySegments",
     "Movement",
     "Pose",
     "Skeleton",
     "SkeletonError",
+    "WorldPose",
     "body_part_segments",
     "build_skeleton",
     "continuous",

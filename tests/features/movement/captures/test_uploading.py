@@ -5,7 +5,7 @@ import hashlib
 import pytest
 from sqlalchemy import func, select
 
-from app.models import CaptureContent, CapturePiece, CaptureRow
+from app.models import CaptureContent, CapturePiece, CaptureRow, HumanoidRow
 from tests.api.people import sign_in
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.captures.files import upload, uploaded, walk_bvh
@@ -14,12 +14,17 @@ WALK = walk_bvh()
 
 
 def counted(lab: Lab) -> tuple[int, int, int]:
-    """Return the numbers of stored captures, contents and pieces."""
+    """Return the numbers of stored captures, contents and pieces, without those of bodies."""
+    bodies = select(HumanoidRow.hash)
     with lab.database.reading() as db:
         return (
-            db.scalars(select(func.count()).select_from(CaptureRow)).one(),
-            db.scalars(select(func.count()).select_from(CaptureContent)).one(),
-            db.scalars(select(func.count()).select_from(CapturePiece)).one(),
+            db.scalars(select(func.count(CaptureRow.id))).one(),
+            db.scalars(
+                select(func.count(CaptureContent.hash)).where(CaptureContent.hash.not_in(bodies))
+            ).one(),
+            db.scalars(
+                select(func.count(CapturePiece.hash)).where(CapturePiece.hash.not_in(bodies))
+            ).one(),
         )
 
 

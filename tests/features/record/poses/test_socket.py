@@ -80,17 +80,18 @@ def test_a_console_receives_the_body_and_the_tasks_surfaces(lab: Lab) -> None:
         assert all(surface["key"].startswith("hand/") for surface in setup["surfaces"])
 
 
-def test_only_a_console_that_is_not_blinded_learns_the_body(lab: Lab) -> None:
+@pytest.mark.one_engine
+def test_only_a_console_that_is_not_blinded_learns_the_body(fresh_lab: Lab) -> None:
     """The setup names the model that the avatar wears, but not to a blinded console."""
-    open_session, blinded = str(lab.join()["id"]), blinded_session(lab)
-    with lab.database.writing() as db:
+    open_session, blinded = str(fresh_lab.join()["id"]), blinded_session(fresh_lab)
+    with fresh_lab.database.writing() as db:
         for session_id in (open_session, blinded):
             as_physics(db, db.get_one(StudySession, session_id))
         worn = configuration_by_hash(db, version_of(db, SHIPPED, None).content_hash).humanoid
         assert worn is not None
-    with watching(lab, open_session) as socket:
+    with watching(fresh_lab, open_session) as socket:
         assert socket.receive_json()["body"] == {"hash": worn}
-    with watching(lab, blinded) as socket:
+    with watching(fresh_lab, blinded) as socket:
         setup = socket.receive_json()
         assert (setup["blinded"], setup["body"]) == (True, None)
 
