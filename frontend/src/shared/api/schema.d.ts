@@ -446,7 +446,7 @@ export interface paths {
          * Get Retargeted Motion
          * @description Return the positions of an avatar's joints over time, for a preview.
          *
-         *     `rotations`: with the joints' rotations, which a body with skin is drawn by.
+         *     `rotations`: also the joints' rotations, which are needed to draw a body with skin.
          */
         readonly get: operations["get_retargeted_motion_api_captures__capture_id__retargeted_motion_get"];
         readonly put?: never;
@@ -636,7 +636,7 @@ export interface paths {
         };
         /**
          * Get Humanoid
-         * @description Return one body: the parts it has and lacks, its lengths, convex pieces, licence, checks.
+         * @description Return one body: parts it has and lacks, lengths, convex pieces, licence and checks.
          */
         readonly get: operations["get_humanoid_api_humanoids__content_hash__get"];
         readonly put?: never;
@@ -646,7 +646,7 @@ export interface paths {
         readonly head?: never;
         /**
          * Patch Humanoid
-         * @description Name a body, which is possible once, give it a title, or confirm terms of its licence.
+         * @description Name a body, which is possible only once, set its title, or confirm terms of its licence.
          */
         readonly patch: operations["patch_humanoid_api_humanoids__content_hash__patch"];
         readonly trace?: never;
@@ -660,7 +660,7 @@ export interface paths {
         };
         /**
          * Get Humanoid Binding
-         * @description Return how the nodes of a model's file follow the parts of its body, to draw it posed.
+         * @description Return how the nodes of a model's file follow the parts of its body, for drawing poses.
          */
         readonly get: operations["get_humanoid_binding_api_humanoids__content_hash__binding_get"];
         readonly put?: never;
@@ -702,7 +702,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Measure
-         * @description Read the stored file again for its licence and counts, which older releases did not read.
+         * @description Read licence and counts of a body from its stored file; older releases did not read them.
          */
         readonly post: operations["post_measure_api_humanoids__content_hash__measure_post"];
         readonly delete?: never;
@@ -720,7 +720,7 @@ export interface paths {
         };
         /**
          * Get Humanoid Use
-         * @description Return the configurations and studies that wear a body.
+         * @description Return the avatar configurations and the studies that use a body.
          */
         readonly get: operations["get_humanoid_use_api_humanoids__content_hash__use_get"];
         readonly put?: never;
@@ -1259,7 +1259,7 @@ export interface paths {
          * Get Movement
          * @description Return the positions of the joints of participant and avatar over time.
          *
-         *     `rotations`: with the joints' rotations, which a body with skin is drawn by.
+         *     `rotations`: also the joints' rotations, which are needed to draw a body with skin.
          */
         readonly get: operations["get_movement_api_sessions__session_id__phases__phase_id__movement_get"];
         readonly put?: never;
@@ -3044,9 +3044,9 @@ export interface components {
          * AvatarChangeReceipt
          * @description A change of the avatar by the operator, which the protocol does not provide for.
          *
-         *     `event`: its number in the event log. `phase_id`: the phase in which it was made, a `deviation`
-         *     from the protocol; None between phases. `applied`: whether the headset carried it out; None if
-         *     it never answered.
+         *     `event`: its number in the event log. `phase_id`: the phase in which it was made, which is a
+         *     `deviation` from the protocol; None between phases. `applied`: whether the headset carried it
+         *     out; None if it never answered.
          */
         readonly AvatarChangeReceipt: {
             /** Applied */
@@ -3060,9 +3060,9 @@ export interface components {
         };
         /**
          * AvatarChanges
-         * @description Changes to an avatar that runs, compared with its configuration.
+         * @description Changes to a running avatar, compared with its configuration.
          *
-         *     `released`: body groups without a cast, such as one that the study has put on.
+         *     `released`: body groups whose cast is taken off, such as one that the study has put on.
          */
         readonly AvatarChanges: {
             /**
@@ -3401,8 +3401,8 @@ export interface components {
          * @description A request for a physics avatar: the participant's stature and any other lengths measured.
          *
          *     `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
-         *     the stature. `body`: the body to wear, one of those that the study's conditions name; left out,
-         *     that of the avatar's configuration.
+         *     the stature. `body`: the body to wear, one of those that the study's conditions name; if left
+         *     out, the body of the avatar's configuration.
          */
         readonly AvatarWish: {
             /** Body */
@@ -3462,7 +3462,7 @@ export interface components {
         };
         /**
          * BindingView
-         * @description How the nodes of a model's file follow the parts of its body; all in its own size.
+         * @description How the nodes of a model's file follow the parts of its body, all in the model's own size.
          *
          *     World: x right, y up, facing -z, soles at height 0. The frame of a part has its origin in the
          *     part's joint and is parallel to the world in the T-pose. `parts` are those that the model has,
@@ -3470,7 +3470,7 @@ export interface components {
          *     the T-pose. `nodes` are the glTF nodes that the parts move: world_from_node is world_from_part
          *     times `part_from_node`, each 16 numbers, row by row. Nodes below a part keep their local
          *     transform; nodes above the hips keep their place relative to the hips. For another stature,
-         *     multiply `joints_m` and the first three rows of each matrix by it / `stature_m`.
+         *     multiply `joints_m` and the first three rows of each matrix by that stature / `stature_m`.
          */
         readonly BindingView: {
             /** Joints M */
@@ -3488,7 +3488,7 @@ export interface components {
         };
         /**
          * BodyChange
-         * @description A change of a body: its name, which can be given only once, its title, confirmed terms.
+         * @description A change of a body: a name, which can be given only once, a title, or confirmed terms.
          */
         readonly BodyChange: {
             /**
@@ -3505,8 +3505,8 @@ export interface components {
          * BodyCheck
          * @description One thing that was checked about a body.
          *
-         *     `parts`: the body parts it is about. `value` and `limit`: what was measured, and what it is
-         *     compared with. `notes` are sentences.
+         *     `parts`: the body parts that the check is about. `value` and `limit`: what was measured, and
+         *     what it was compared with. `notes` are sentences about the result.
          */
         readonly BodyCheck: {
             /**
@@ -3536,7 +3536,7 @@ export interface components {
         };
         /**
          * BodyUse
-         * @description Who wears a body: configurations of avatars, and studies that the reader may see.
+         * @description Where a body is used: avatar configurations, and studies that the reader may see.
          */
         readonly BodyUse: {
             /** Configurations */
@@ -3752,8 +3752,8 @@ export interface components {
          * Cast
          * @description A cast around a body group, which holds its axes.
          *
-         *     `held_deg`: axis -> angle at which it is held, to which it is moved first. Axes without an angle
-         *     are held where they are when the cast is put on.
+         *     `held_deg`: axis -> the angle to which the axis is moved, and at which it is then held. Axes
+         *     without an angle are held where they are when the cast is put on.
          */
         readonly Cast: {
             /**
@@ -4120,7 +4120,7 @@ export interface components {
         };
         /**
          * ConfigurationUse
-         * @description A version of an avatar's configuration that has the body.
+         * @description A version of an avatar configuration that uses the body.
          */
         readonly ConfigurationUse: {
             /** Key */
@@ -4847,8 +4847,8 @@ export interface components {
          *     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
          *     the first and last day, in UTC, on which a session was created. `order`: added latencies in ms
          *     in the order of the blocks, as in "0 125 350". `body`: only phases in which this body was worn;
-         *     in a study whose conditions share latencies the first body if it is left out, because figures
-         *     are drawn over latency.
+         *     if it is left out in a study whose conditions share latencies, the first body is chosen,
+         *     because figures are drawn over latency.
          */
         readonly FigureFilter: {
             /** Body */
@@ -4923,7 +4923,7 @@ export interface components {
          * @description The values that the filter can take.
          *
          *     They are participant codes, orders as "0 125 350", limbs, bodies, and the first and last day in
-         *     UTC. There are bodies if conditions share latencies and differ in their bodies.
+         *     UTC. Bodies are listed only if conditions share latencies and differ in their bodies.
          */
         readonly FilterChoices: {
             /** Bodies */
@@ -5050,7 +5050,7 @@ export interface components {
          * GainChange
          * @description The gains and greatest torque of the motors of a group, part or axis.
          *
-         *     Each is a factor of the configuration's value, or a value for every axis that is meant.
+         *     Each is a factor of the configuration's value, or a value for each of these axes.
          */
         readonly GainChange: {
             /**
@@ -5217,7 +5217,7 @@ export interface components {
          *     studies call it, null until it is given. `stature_m` is its own; an avatar has that of its
          *     participant. `bones_by`: whether bones were identified by VRM's map or by their names. Counts
          *     are of body parts that the model has, and of those with a convex piece; those of triangles,
-         *     vertices and textures are null if an earlier release has measured it.
+         *     vertices and textures are null if an earlier release measured the body.
          */
         readonly HumanoidListed: {
             /**
@@ -5281,8 +5281,8 @@ export interface components {
          *
          *     `present` and `absent` are the body parts it has and lacks; those in `simple` have too little
          *     skin for a convex piece and keep capsules and boxes. `segments_m` are its lengths. `notes` are
-         *     sentences on anything unusual in the file. `asked`: the terms of its licence that must be
-         *     confirmed before it is worn, `confirmations` those that were.
+         *     sentences on anything unusual in the file. `asked`: the terms of its licence that must still
+         *     be confirmed before it is worn; `confirmations`: those that have been confirmed.
          */
         readonly HumanoidView: {
             /** Absent */
@@ -5880,7 +5880,7 @@ export interface components {
         };
         /**
          * LicenceView
-         * @description What the file of a body says of its author and terms; texts are empty where it says nothing.
+         * @description What the file of a body says about its author and terms; texts are empty if it says nothing.
          *
          *     `name` is the licence's, `url` and `other_url` lead to its terms. `wearers`: who may wear it.
          *     `permissions`: what its author allows, by kind of use. `credit_needed`: whether its authors must
@@ -8940,7 +8940,7 @@ export interface components {
         };
         /**
          * WornBy
-         * @description A study whose newest version wears a body in its conditions or in its configuration.
+         * @description A study whose newest version uses a body, in its conditions or in its configuration.
          */
         readonly WornBy: {
             /** Key */
