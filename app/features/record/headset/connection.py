@@ -245,7 +245,8 @@ class HeadsetConnection:
     def _state(self) -> HeadsetState:
         with self.context.database.reading() as db:
             device_of_token(db, self.token, "headset")
-            return headset_state(db, session_by_id(db, self.session_id))
+            session = session_by_id(db, self.session_id)
+            return headset_state(db, session, changes_avatar=self._changes_avatar)
 
     def _require_pairing(self) -> None:
         with self.context.database.reading() as db:

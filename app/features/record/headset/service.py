@@ -67,7 +67,7 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
     """Return the answer to a hello message; a client without an epoch is assigned the next one.
 
     Raises Conflict if the client cannot show the session's avatar, or cannot change it although the
-    study does.
+    study does or an operator has.
     """
     session = session_by_id(db, session_id, lock=True)
     require_capture(db, session_id)
@@ -92,7 +92,7 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
             for key, text in protocol.texts.items()
         },
         positions=positions_of(db, session_id),
-        state=headset_state(db, session),
+        state=headset_state(db, session, changes_avatar=hello.changes_avatar),
         bodies=protocol.bodies,
     )
 
@@ -113,7 +113,7 @@ def _require_avatar(session: StudySession, hello: Hello) -> None:
 
 
 def _require_changes(db: Session, session: StudySession, hello: Hello) -> None:
-    """Raise Conflict if the study changes the avatar in a phase and the client cannot do so."""
+    """Raise Conflict if the study or an operator changes the avatar and the client cannot do so."""
     if hello.changes_avatar or session.avatar_configuration_hash is None:
         return
     changing = [step.key for step in plan_of(db, session) if step.avatar_changes is not None]
@@ -125,13 +125,29 @@ def _require_changes(db: Session, session: StudySession, hello: Hello) -> None:
             valid={"changes_avatar": True},
             remedy="Use a client that can, or a version of the study without avatar_changes.",
         )
+    in_force = avatar_in_force(db, session)
+    if in_force is not None and in_force.settings != in_force.configured:
+        raise Conflict(
+            f"{hello.client} cannot change the avatar while it runs, and an operator has changed "
+            "the avatar of this session",
+            value={"changes_avatar": False},
+            valid={"changes_avatar": True},
+            remedy="Use a client that can, or let an operator take the change back.",
+        )
 
 
-def headset_state(db: Session, session: StudySession) -> HeadsetState:
-    """Return the state of a session as sent to its headset."""
+def headset_state(
+    db: Session, session: StudySession, *, changes_avatar: bool = False
+) -> HeadsetState:
+    """Return the state of a session as sent to its headset.
+
+    `changes_avatar`: whether the headset's client can change the avatar. Changes are sent to no
+    other client: those of earlier releases do not know the field, and accept no unknown fields.
+    """
     state, plan = state_of(session), plan_of(db, session)
     step = None if state.current is None else plan[state.current]
     active = state.status == "active"
+    in_force = avatar_in_force(db, session) if active and changes_avatar else None
     return HeadsetState(
         version=session.version,
         status=str(state.status),
@@ -141,7 +157,7 @@ def headset_state(db: Session, session: StudySession) -> HeadsetState:
         recording=active and _is_recording(state, step),
         phase=_phase_order(db, session, state, plan),
         participant=participant_info(db, session),
-        avatar_changes=_avatar_order(avatar_in_force(db, session)) if active else None,
+        avatar_changes=_avatar_order(in_force),
     )
 
 

@@ -214,6 +214,48 @@ def test_a_client_that_cannot_change_its_avatar_is_refused_by_such_a_study(fresh
 
 
 @pytest.mark.one_engine
+def test_a_client_that_cannot_change_its_avatar_is_refused_while_it_is_changed(
+    fresh_lab: Lab,
+) -> None:
+    """An operator's change refuses such a headset until the operator takes it back.
+
+    They can do so although no headset is connected. The headset is then not sent the changes, whose
+    field its program may not know.
+    """
+    view = joined(fresh_lab)
+    token = fresh_lab.headset_token(view["id"])
+    with wearing(fresh_lab, token) as wearer:
+        view = in_the_body(fresh_lab, view, wearer)
+        view = fresh_lab.command(view, "change_avatar", avatar_changes=NO_GRAVITY)
+    with wearing(fresh_lab, token, changes_avatar=False) as unable:
+        assert unable.welcome["type"] == "error"
+        assert "an operator has changed the avatar" in unable.welcome["message"]
+        assert "take the change back" in unable.welcome["remedy"]
+    view = fresh_lab.command(fresh_lab.view(view["id"]), "change_avatar")
+    with wearing(fresh_lab, token, changes_avatar=False) as unable:
+        assert unable.welcome["type"] == "welcome"
+        assert "avatar_changes" not in unable.welcome["state"]
+        assert "avatar_changes" not in unable.hear(lambda one: one["type"] == "state")
+
+
+@pytest.mark.one_engine
+def test_changes_are_taken_back_whatever_the_headset_can_do(fresh_lab: Lab) -> None:
+    """Changes that leave the avatar as configured admit any headset and can be taken back."""
+    view = joined(fresh_lab)
+    token = fresh_lab.headset_token(view["id"])
+    with wearing(fresh_lab, token) as wearer:
+        view = in_the_body(fresh_lab, view, wearer)
+        view = fresh_lab.command(view, "change_avatar", avatar_changes={"gravity": True})
+    with wearing(fresh_lab, token, changes_avatar=False) as unable:
+        unable.hear(lambda one: one["type"] == "state")
+        view = fresh_lab.view(view["id"])
+        reply = fresh_lab.try_command(view, "change_avatar", avatar_changes=NO_GRAVITY)
+        assert error(reply, 409, "not_now")["value"] == "changes_avatar: false"
+        fresh_lab.command(view, "change_avatar")
+    assert of_type(fresh_lab, view["id"], "avatar_changed")[-1]["data"]["changes"] == {}
+
+
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("changes", "said"),
     [

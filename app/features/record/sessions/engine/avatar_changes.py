@@ -49,6 +49,7 @@ def _change(state: SessionState, command: c.ChangeAvatar) -> list[e.Event]:
 
 
 def _require_avatar(state: SessionState, command: c.ChangeAvatar) -> None:
+    """Refuse a change that could not take effect; taking changes back needs no headset."""
     if not command.is_physics:
         raise Refused(
             "the avatar of this session is a delayed copy, which cannot be changed",
@@ -63,6 +64,8 @@ def _require_avatar(state: SessionState, command: c.ChangeAvatar) -> None:
             valid=["materialised"],
             remedy="Let the participant enter the body first.",
         )
+    if not command.changes:
+        return
     if command.headset_can is None:
         raise Refused(
             "no headset is connected, so the avatar cannot be changed",
