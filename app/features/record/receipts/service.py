@@ -4,7 +4,7 @@ import json
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Self
 
-from sqlalchemy import func, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app import __version__
@@ -144,40 +144,53 @@ def _doubt_problem(doubt: Doubt) -> str:
 
 
 def _phase_problems(db: Session, session_id: str) -> list[str]:
-    """Report finished phases without frames, in which nothing can have been recorded."""
+    """Report finished phases without frames, in which nothing can have been recorded.
+
+    Fingers must be there in those epochs of a phase that announced them.
+    """
     phases = db.scalars(
         select(Phase)
         .where(Phase.session_id == session_id, Phase.status == "done")
         .order_by(Phase.phase_id)
     ).all()
-    return [
-        f"phase {phase.phase_id}: no frames of the {_WHAT[stream]}"
-        for phase in phases
-        for stream in (*BODY_STREAMS, *_announced_fingers(db, session_id))
-        if not _has_frames(db, phase, stream)
-    ]
+    announced = _announced_fingers(db, session_id)
+    problems = []
+    for phase in phases:
+        found = _streams_of(db, phase)
+        streams, epochs = {stream for stream, _ in found}, {epoch for _, epoch in found}
+        problems += [
+            f"phase {phase.phase_id}: no frames of the {_WHAT[stream]}"
+            for stream in BODY_STREAMS
+            if stream not in streams
+        ]
+        problems += [
+            f"phase {phase.phase_id}, epoch {epoch}: no frames of the {_WHAT[stream]}"
+            for epoch in sorted(epochs)
+            for stream in FINGER_STREAMS
+            if (stream, epoch) in announced - found
+        ]
+    return problems
 
 
-def _announced_fingers(db: Session, session_id: str) -> list[StreamName]:
-    """Return the streams of fingers if a headset has announced them, else none."""
-    query = select(TelemetryStream.stream).where(
+def _announced_fingers(db: Session, session_id: str) -> set[tuple[str, int]]:
+    """Return the streams of fingers, with their epochs, that a headset has announced."""
+    query = select(TelemetryStream.stream, TelemetryStream.epoch).where(
         TelemetryStream.session_id == session_id, TelemetryStream.stream.in_(FINGER_STREAMS)
     )
-    found = set(db.scalars(query))
-    return [stream for stream in FINGER_STREAMS if stream in found]
+    return {(stream, epoch) for stream, epoch in db.execute(query)}
 
 
-def _has_frames(db: Session, phase: Phase, stream: str) -> bool:
-    return any(
-        db.scalar(
-            select(func.count()).where(
-                table.session_id == phase.session_id,
-                table.phase_id == phase.phase_id,
-                table.stream == stream,
-            )
-        )
+def _streams_of(db: Session, phase: Phase) -> set[tuple[str, int]]:
+    """Return the streams, with their epochs, that have frames in a phase."""
+    return {
+        (stream, epoch)
         for table in (TelemetryChunk, TelemetryBatch)
-    )
+        for stream, epoch in db.execute(
+            select(table.stream, table.epoch)
+            .where(table.session_id == phase.session_id, table.phase_id == phase.phase_id)
+            .distinct()
+        )
+    }
 
 
 def _chain_problems(chain: ChainCheck) -> list[str]:

@@ -2,15 +2,20 @@
 
 import json
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 from sqlalchemy import delete, update
 
 from app.features.record.receipts.service import receipt_text
 from app.features.record.telemetry import assign_epoch
 from app.models import Phase, SessionEvent, TelemetryChunk
+from app.wire import StreamName
 from tests.features.builders import NOW
 from tests.features.lab import Lab, ok
+from tests.features.movement_builders import moving_values, store_chunks
 from tests.features.record.receipts.conftest import StoredSession
+from tests.wire.samples import resting_fingers
 
 
 def test_a_changed_event_is_reported(stored: StoredSession) -> None:
@@ -38,14 +43,28 @@ def test_a_phase_without_movement_is_reported(stored: StoredSession) -> None:
 
 @pytest.mark.one_engine
 def test_announced_fingers_that_are_missing_are_reported(stored: StoredSession) -> None:
-    """A phase without fingers is a problem only if a headset has announced that it sends them."""
-    assert not any("fingers" in problem for problem in stored.receipt().problems)
+    """Fingers are missing only where a run of a phase lacks those that it has announced."""
+
+    def problems() -> list[str]:
+        return [one for one in stored.receipt().problems if "fingers" in one]
+
+    def store(stream: StreamName, values: NDArray[np.float32], phase_id: int) -> None:
+        stored.change(
+            lambda db: store_chunks(
+                db, stored.session_id, stream, range(9), values, epoch=3, phase_id=phase_id
+            )
+        )
+
+    assert problems() == []
     stored.change(lambda db: assign_epoch(db, stored.session_id, NOW, fingers=True))
-    receipt = stored.receipt()
-    announced = "phase 2: no frames of the target fingers, which the headset announced"
-    assert announced in receipt.problems
-    assert {"target_fingers", "actual_fingers"} < {one.stream for one in receipt.streams}
-    assert "actual_fingers       3         0         0        0" in receipt_text(receipt)
+    # The runs that moved in the phases have announced nothing.
+    assert problems() == []
+    assert "actual_fingers       3         0         0        0" in receipt_text(stored.receipt())
+    store(StreamName.TARGET, moving_values(9, 1), 2)
+    store(StreamName.TARGET_FINGERS, resting_fingers(9), 2)
+    (missing,) = problems()
+    announced = "no frames of the actual fingers, which the headset announced"
+    assert missing == f"phase 2, epoch 3: {announced}"
 
 
 @pytest.mark.one_engine
