@@ -111,14 +111,23 @@ def receipt_of(db: Session, session_id: str) -> SessionReceipt:
 
 
 def _avatar_changes(db: Session, session_id: str) -> tuple[AvatarChangeReceipt, ...]:
+    """Return the operator's changes, each with the headset's first later report that covers it.
+
+    A headset brings its body to the newest changes, so it may skip earlier revisions.
+    """
     log = [(row.seq, row.type, json.loads(row.payload)) for row in events_of(db, session_id)]
-    applied = {
-        payload["revision"]: payload["applied"]
-        for _, kind, payload in log
+    reports = [
+        (seq, payload["revision"], payload["applied"])
+        for seq, kind, payload in log
         if kind == "avatar_change_reported"
-    }
+    ]
     return tuple(
-        AvatarChangeReceipt(seq, payload["phase_id"], payload["deviation"], applied.get(seq))
+        AvatarChangeReceipt(
+            seq,
+            payload["phase_id"],
+            payload["deviation"],
+            next((done for at, to, done in reports if at > seq and to >= seq), None),
+        )
         for seq, kind, payload in log
         if kind == "avatar_changed" and payload["by"] == "operator"
     )

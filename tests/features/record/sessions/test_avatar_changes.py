@@ -185,6 +185,34 @@ def test_the_studys_cast_lasts_as_long_as_its_phase(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
+def test_a_report_confirms_the_changes_before_it(fresh_lab: Lab) -> None:
+    """A change is confirmed by the first report on its own revision or a later one."""
+    view = joined(fresh_lab)
+    with wearing(fresh_lab, fresh_lab.headset_token(view["id"])) as wearer:
+        view = in_the_body(fresh_lab, view, wearer)
+
+        def change(changes: Json) -> int:
+            now = fresh_lab.view(view["id"])
+            done = fresh_lab.command(now, "change_avatar", avatar_changes=changes)
+            return int(done["version"])
+
+        def report(revision: int, *, applied: bool) -> None:
+            wearer.report(kind="avatar_changes", revision=revision, t_s=9.0, applied=applied)
+
+        first = change(NO_GRAVITY)
+        second = change({})
+        report(second, applied=True)
+        third = change(NO_GRAVITY)
+        report(second, applied=True)
+        report(third, applied=False)
+        report(third, applied=True)
+        last = change({})
+    with fresh_lab.database.reading() as db:
+        confirmed = [(one.event, one.applied) for one in receipt_of(db, view["id"]).avatar_changes]
+    assert confirmed == [(first, True), (second, True), (third, False), (last, None)]
+
+
+@pytest.mark.one_engine
 def test_a_change_is_refused_where_it_could_not_take_effect(fresh_lab: Lab) -> None:
     """A change is refused before the body appears, by a headset that cannot, and if outdated."""
     view = joined(fresh_lab)
