@@ -6,16 +6,7 @@ Source: Khronos, glTF 2.0 specification, section 5; VRM consortium, VRM 0.0 (`VR
 
 from typing import Annotated, Literal
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    TypeAdapter,
-    ValidationError,
-    ValidationInfo,
-    ValidatorFunctionWrapHandler,
-    WrapValidator,
-)
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.rights import Asset, Vrm0Meta, Vrm1Meta
@@ -33,20 +24,6 @@ Sixteen = Annotated[list[Number], Field(min_length=16, max_length=16)]
 
 class _Part(BaseModel):
     model_config = ConfigDict(strict=True, allow_inf_nan=False)
-
-
-def _or_default(value: object, read: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
-    """Return the field's default in place of a value that is not valid for it.
-
-    Invalid statements about the author must not keep the body from being read.
-    """
-    try:
-        return read(value)
-    except ValidationError:
-        return Asset() if info.field_name == "asset" else None
-
-
-_LENIENT = WrapValidator(_or_default)
 
 
 class Node(_Part):
@@ -171,7 +148,7 @@ class Vrm0(_Part):
     """The glTF extension `VRM` (VRM 0)."""
 
     humanoid: Vrm0Humanoid | None = None
-    meta: Annotated[Vrm0Meta | None, _LENIENT] = None
+    meta: Vrm0Meta | None = None
 
 
 class Vrm1Bone(_Part):
@@ -190,7 +167,7 @@ class Vrm1(_Part):
     """The glTF extension `VRMC_vrm` (VRM 1.0)."""
 
     humanoid: Vrm1Humanoid
-    meta: Annotated[Vrm1Meta | None, _LENIENT] = None
+    meta: Vrm1Meta | None = None
 
 
 class Extensions(_Part):
@@ -210,7 +187,7 @@ class Image(_Part):
 class Document(_Part):
     """The JSON of a glTF file."""
 
-    asset: Annotated[Asset, _LENIENT] = Asset()
+    asset: Asset = Asset()
     images: Annotated[list[Image], Field(max_length=_MOST)] = []
 
     extensionsRequired: Annotated[list[Name], Field(max_length=200)] = []  # noqa: N815

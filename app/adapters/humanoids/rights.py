@@ -18,7 +18,16 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Final, Literal
 from urllib.parse import parse_qsl, urlsplit
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    field_validator,
+    model_validator,
+)
+from pydantic_core import PydanticUseDefault
 
 Permission = Literal["allowed", "forbidden", "unknown"]
 Wearers = Literal["author", "licensed", "everyone", "unknown"]
@@ -73,8 +82,26 @@ class ModelRights:
 
 
 class _Meta(BaseModel):
-    # Statements of an unknown kind must not keep the body from being read: all are optional texts.
+    """Statements of a file, each optional; one that is not valid counts as not made.
+
+    Invalid statements must neither keep the body from being read nor hide the valid ones, above
+    all not who may wear it.
+    """
+
     model_config = ConfigDict(strict=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _object_or_nothing(cls, value: object) -> object:
+        return value if isinstance(value, dict) else {}
+
+    @field_validator("*", mode="wrap")
+    @classmethod
+    def _valid_or_default(cls, value: object, read: ValidatorFunctionWrapHandler) -> object:
+        try:
+            return read(value)
+        except ValidationError:
+            raise PydanticUseDefault from None
 
 
 class Vrm0Meta(_Meta):
@@ -102,15 +129,21 @@ class Vrm1Meta(_Meta):
     contactInformation: _Text = ""  # noqa: N815
     licenseUrl: _Text = ""  # noqa: N815
     otherLicenseUrl: _Text = ""  # noqa: N815
-    avatarPermission: _Text = "onlyAuthor"  # noqa: N815
+    avatarPermission: Literal[  # noqa: N815
+        "onlyAuthor", "onlySeparatelyLicensedPerson", "everyone"
+    ] = "onlyAuthor"
     allowExcessivelyViolentUsage: bool = False  # noqa: N815
     allowExcessivelySexualUsage: bool = False  # noqa: N815
     allowPoliticalOrReligiousUsage: bool = False  # noqa: N815
     allowAntisocialOrHateUsage: bool = False  # noqa: N815
-    commercialUsage: _Text = "personalNonProfit"  # noqa: N815
+    commercialUsage: Literal[  # noqa: N815
+        "personalNonProfit", "personalProfit", "corporation"
+    ] = "personalNonProfit"
     allowRedistribution: bool = False  # noqa: N815
-    modification: _Text = "prohibited"
-    creditNotation: _Text = "required"  # noqa: N815
+    modification: Literal["prohibited", "allowModification", "allowModificationRedistribution"] = (
+        "prohibited"
+    )
+    creditNotation: Literal["required", "unnecessary"] = "required"  # noqa: N815
 
 
 class Asset(_Meta):
@@ -211,15 +244,15 @@ def _of_vrm1(meta: Vrm1Meta, asset: Asset) -> ModelRights:
         licence="VRM Public License 1.0" if "vrm.dev/licenses/1.0" in meta.licenseUrl else "",
         licence_url=_short(meta.licenseUrl),
         other_url=_short(meta.otherLicenseUrl),
-        wearers=_WEARERS_1.get(meta.avatarPermission, "unknown"),
+        wearers=_WEARERS_1[meta.avatarPermission],
         violent=_allowed(meta.allowExcessivelyViolentUsage),
         sexual=_allowed(meta.allowExcessivelySexualUsage),
         political=_allowed(meta.allowPoliticalOrReligiousUsage),
         antisocial=_allowed(meta.allowAntisocialOrHateUsage),
-        commercial=selling.get(meta.commercialUsage, "unknown"),
+        commercial=selling[meta.commercialUsage],
         redistribution=_allowed(meta.allowRedistribution),
-        modification=changing.get(meta.modification, "unknown"),
-        credit_needed=_CREDIT.get(meta.creditNotation),
+        modification=changing[meta.modification],
+        credit_needed=_CREDIT[meta.creditNotation],
     )
 
 

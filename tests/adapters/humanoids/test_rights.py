@@ -143,6 +143,35 @@ def test_an_odd_meta_does_not_hinder_reading(meta: Any, vrm: int) -> None:
 
 
 @pytest.mark.parametrize(
+    "odd",
+    [{"reference": None}, {"title": 7}, {"author": "x" * 10_001}, {"contactInformation": ["me"]}],
+)
+def test_an_odd_field_of_vrm_0_does_not_hide_the_others(odd: Json) -> None:
+    """A field that is not valid counts as absent; who may wear the body is read all the same."""
+    meta = {"allowedUserName": "OnlyAuthor", "licenseName": "CC_BY_NC", **odd}
+    found = rights(meta, vrm=0)
+    assert (found.wearers, found.commercial, found.credit_needed) == ("author", "forbidden", True)
+
+
+@pytest.mark.parametrize(
+    "odd",
+    [
+        {"copyrightInformation": None},
+        {"authors": ["A", 7]},
+        {"avatarPermission": 1},
+        {"avatarPermission": "OnlyAuthor"},
+        {"allowRedistribution": "yes"},
+        {"name": "x" * 10_001},
+    ],
+)
+def test_an_odd_field_of_vrm_1_does_not_hide_the_others(odd: Json) -> None:
+    """A field that is not valid has its default, which forbids; the others keep their values."""
+    found = rights({"licenseUrl": "https://x", "modification": "allowModification", **odd}, vrm=1)
+    assert (found.wearers, found.redistribution, found.authors) == ("author", "forbidden", ())
+    assert (found.licence_url, found.modification) == ("https://x", "allowed")
+
+
+@pytest.mark.parametrize(
     ("data", "expected"),
     [
         (b"\x89PNG\r\n\x1a\n" + bytes(8) + struct.pack(">II", 640, 480), ("image/png", 640, 480)),

@@ -14,7 +14,12 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidConfig, NotFound, StaleVersion
 from app.features.movement.avatar.schemas import NewAvatar, NewAvatarVersion, Origin
-from app.features.movement.humanoids import asked_terms, humanoid_by_hash, is_known
+from app.features.movement.humanoids import (
+    asked_terms,
+    humanoid_by_hash,
+    is_known,
+    licence_is_read,
+)
 from app.features.people.audit import record
 from app.models import Avatar, AvatarVersion
 from app.platform.config_problems import unpacking
@@ -230,7 +235,8 @@ def checked(db: Session, file: AvatarFile) -> LoadedAvatar:
 def unknown_humanoid(db: Session, configuration: Configuration) -> Iterator[AvatarProblem]:
     """Yield a problem if the configuration refers to a body that is missing or must not be worn.
 
-    A body must not be worn before the terms of its licence that restrict wearing are confirmed.
+    A body must not be worn before its licence has been read, and the terms in it that restrict
+    wearing are confirmed. Configurations that are stored already are not checked again.
     """
     content_hash = configuration.humanoid
     if content_hash is None:
@@ -243,7 +249,17 @@ def unknown_humanoid(db: Session, configuration: Configuration) -> Iterator[Avat
             valid="the hash of an uploaded model",
             remedy="Upload the model's file first, or leave 'humanoid' out.",
         )
-    elif asked_terms(humanoid_by_hash(db, content_hash)):
+        return
+    row = humanoid_by_hash(db, content_hash)
+    if not licence_is_read(row):
+        yield AvatarProblem(
+            "humanoid",
+            "The licence of this body was never read, because an earlier release stored the body.",
+            value=content_hash,
+            valid="a body whose licence has been read",
+            remedy="Measure it again on the page Bodies, which reads the licence from its file.",
+        )
+    elif asked_terms(row):
         yield AvatarProblem(
             "humanoid",
             "The licence of this body restricts who may wear it, and nobody has confirmed that "

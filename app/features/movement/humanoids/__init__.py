@@ -1,6 +1,6 @@
 """Bodies: humanoid models that give avatars their shape, identified by hash and named by people."""
 
-from app.features.movement.humanoids.licences import asked_terms
+from app.features.movement.humanoids.licences import asked_terms, licence_is_read
 from app.features.movement.humanoids.service import (
     body_by_name,
     figure_by_hash,
@@ -21,6 +21,7 @@ __all__ = [
     "figure_by_hash",
     "humanoid_by_hash",
     "is_known",
+    "licence_is_read",
     "measure",
     "named_bodies",
     "parsed_figure",

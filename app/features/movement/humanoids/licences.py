@@ -3,7 +3,9 @@
 VRM files say who may wear a model: everybody, only people to whom its author has given permission,
 or only the author. A server cannot know who its participants are, so a person has to confirm that
 the term is met; the confirmation is stored with the body and in the audit trail. A body whose file
-says nothing is not restricted, and is shown as such.
+says nothing is not restricted, and is shown as such. A body whose file has not been read for its
+terms, because an earlier release stored it, must be measured again before it gets a name or a
+configuration.
 """
 
 from dataclasses import asdict
@@ -34,6 +36,11 @@ def stored_licence(rights: ModelRights) -> dict[str, Any]:
 def licence_of(row: HumanoidRow) -> LicenceView | None:
     """Return what the body's file says about its terms; None if that has not been read yet."""
     return None if row.licence is None else LicenceView.model_validate(row.licence)
+
+
+def licence_is_read(row: HumanoidRow) -> bool:
+    """Return whether the body's file has been read for its terms."""
+    return row.licence is not None
 
 
 def confirmations_of(row: HumanoidRow) -> list[ConfirmationView]:

@@ -9,13 +9,15 @@ from datetime import datetime
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.errors import Conflict
-from app.features.movement.humanoids.licences import asked_terms, confirmed_with
+from app.errors import Conflict, InvalidInput
+from app.features.movement.humanoids.licences import asked_terms, confirmed_with, licence_is_read
 from app.features.movement.humanoids.schemas import BodyChange, BodyTitle, Term
 from app.features.movement.humanoids.service import humanoid_by_hash
 from app.features.people.audit import record
 from app.models import HumanoidRow
 
+_RESERVED = "configuration"
+"""What results call the body of a study's avatar configuration, which has no name of its own."""
 _TERMS: dict[Term, str] = {
     "only_author": "only its author may wear it",
     "only_licensed_people": "only people to whom its author has given permission may wear it",
@@ -27,8 +29,8 @@ def change_body(
 ) -> None:
     """Name a body, retitle it, or confirm terms of its licence; all of it or nothing.
 
-    Raises NotFound, and Conflict if the body has another name already, if another body has the
-    name, or if a term of the licence must be confirmed first.
+    Raises NotFound, InvalidInput if the name is reserved, and Conflict if the body has another name
+    already, if another body has the name, or if its licence must be read or confirmed first.
     """
     row = humanoid_by_hash(db, content_hash, lock=True)
     _confirm(db, actor, row, change.confirmed, now)
@@ -39,7 +41,15 @@ def change_body(
 
 
 def require_confirmed(row: HumanoidRow) -> None:
-    """Raise Conflict if a term of the body's licence must be confirmed before it is worn."""
+    """Raise Conflict if the body's licence must be read or confirmed before it is worn."""
+    if not licence_is_read(row):
+        raise Conflict(
+            f"the licence of {row.name or row.file_name!r} was never read, because an earlier "
+            "release stored the body",
+            value=row.hash,
+            valid="a body whose licence has been read",
+            remedy="Measure it again on the page Bodies, which reads the licence from its file.",
+        )
     asked = asked_terms(row)
     if asked:
         raise Conflict(
@@ -66,6 +76,14 @@ def _give_name(db: Session, actor: str, row: HumanoidRow, name: str, now: dateti
             value=name,
             valid=row.name,
             remedy="Records refer to the body by its name. Change its title instead.",
+        )
+    if name == _RESERVED:
+        raise InvalidInput(
+            f"no body can be called {name!r}: results call the body of a study's avatar "
+            "configuration so",
+            value=name,
+            valid=f"any other name than {_RESERVED!r}",
+            remedy="Choose another name.",
         )
     other = db.scalar(select(HumanoidRow.hash).where(HumanoidRow.name == name))
     if other is not None:

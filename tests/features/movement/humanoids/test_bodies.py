@@ -8,6 +8,7 @@ from sqlalchemy import update
 
 from app.adapters.humanoids import ModelRights
 from app.features.movement.humanoids.licences import stored_licence
+from app.features.results.analysis.material import OWN_BODY
 from app.models import HumanoidRow
 from tests.api.people import sign_in
 from tests.features.lab import Json, Lab, error, ok
@@ -59,6 +60,43 @@ def test_names_of_bodies_are_keys(fresh_lab: Lab) -> None:
         answer = fresh_lab.operator.patch(f"{PATH}/{HASH}", json={"name": name})
         error(answer, 422, "invalid_input")
     error(fresh_lab.operator.patch(f"{PATH}/{'0' * 64}", json={"name": "tall"}), 404, "not_found")
+
+
+@pytest.mark.one_engine
+def test_the_word_for_the_body_of_a_configuration_is_no_name(fresh_lab: Lab) -> None:
+    """A body cannot have the name by which results call the body of a study's configuration."""
+    upload(fresh_lab)
+    answer = fresh_lab.operator.patch(f"{PATH}/{HASH}", json={"name": OWN_BODY})
+    assert "Choose another name" in error(answer, 422, "invalid_input")["remedy"]
+    assert ok(fresh_lab.operator.get(f"{PATH}/{HASH}"))["name"] is None
+
+
+@pytest.mark.one_engine
+def test_a_body_whose_licence_was_never_read_is_measured_again_first(fresh_lab: Lab) -> None:
+    """A body of an earlier release gets neither a name nor a configuration before it is measured.
+
+    Configurations that are stored already stay as they are.
+    """
+    upload(fresh_lab)
+    configuration = replace(SHIPPED, humanoid=HASH)
+    new(fresh_lab, "earlier", configuration)
+    set_columns(fresh_lab, licence=None)
+    named = fresh_lab.operator.patch(f"{PATH}/{HASH}", json={"name": "old"})
+    assert "Measure it again" in error(named, 409, "conflict")["remedy"]
+    body = {
+        "key": "skinned",
+        "title": "Skinned",
+        "origin": "by_hand",
+        "configuration": as_json(configuration),
+    }
+    worn = error(fresh_lab.operator.post(AVATARS, json=body), 422, "invalid_config")
+    assert worn["details"][0]["path"] == "configuration.humanoid"
+    assert "Measure it again" in worn["details"][0]["remedy"]
+    stored = ok(fresh_lab.operator.get(f"{AVATARS}/earlier"))["newest"]
+    assert stored["configuration"]["humanoid"] == HASH
+    ok(fresh_lab.operator.post(f"{PATH}/{HASH}/measure"))
+    assert change(fresh_lab, name="old")["name"] == "old"
+    assert fresh_lab.operator.post(AVATARS, json=body).status_code == 201
 
 
 @pytest.mark.one_engine
