@@ -30,7 +30,7 @@ interface ItemTrace {
 
 export type ItemTraces = Readonly<Record<string, ItemTrace>>;
 
-interface Turn {
+export interface Turn {
   /** The item being answered; null before the first answer on a page. */
   readonly item: string | null;
   /** When its turn started, and when it was last changed, on one monotonic clock. */

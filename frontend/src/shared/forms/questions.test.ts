@@ -21,6 +21,13 @@ describe("an instrument as a form", () => {
     expect(questions().map(({ key }) => key)).toEqual(administration.item_order);
   });
 
+  it("has one question on a page where it is asked for", () => {
+    const pages = questionPages(administration, { ...options, isOnePerPage: true });
+    expect(pages.map((page) => page.map(({ key }) => key))).toEqual(
+      administration.item_order.map((key) => [key]),
+    );
+  });
+
   it("is in the requested language", () => {
     expect(questions({ language: "de" })[0]?.title).toBe("Glasses (de)");
   });

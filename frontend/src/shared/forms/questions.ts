@@ -22,6 +22,8 @@ interface FormOptions {
   readonly words: FormWords;
   /** Whether the operator may omit what the participant did not answer. */
   readonly canOmit: boolean;
+  /** Every question on a page of its own, as in a headset; otherwise as many as fit a tablet. */
+  readonly isOnePerPage?: boolean;
 }
 
 export interface Option {
@@ -72,9 +74,10 @@ export function questionPages(
   const byKey = new Map(instrument.items.map((item) => [item.key, item]));
   const ordered = item_order.flatMap((key) => byKey.get(key) ?? []);
   const scaleOf = (item: Item) => item.scale ?? instrument.scale ?? null;
-  return pagesOf(ordered, (item) => stepsOf(scaleOf(item)).length).map((items) =>
-    items.map((item) => question(item, scaleOf(item), options)),
-  );
+  const pages = options.isOnePerPage
+    ? ordered.map((item) => [item])
+    : pagesOf(ordered, (item) => stepsOf(scaleOf(item)).length);
+  return pages.map((items) => items.map((item) => question(item, scaleOf(item), options)));
 }
 
 function question(item: Item, scale: Scale | null, options: FormOptions): Question {

@@ -1,12 +1,13 @@
 import "fake-indexeddb/auto";
 import { ApiError, Unreachable } from "@shared/api/request";
 import type { Receipt, Submission, TabletState } from "@shared/api/types";
+import { deliver } from "@shared/forms/deliver";
+import type { StoredForm } from "@shared/forms/storedForms";
 import { uuid } from "@shared/uuid";
 import { openDB } from "idb";
 import { beforeEach, describe, expect, it } from "vitest";
-import { deliver } from "./deliver";
 import { isFinal } from "./refusal";
-import { DraftStore, type StoredForm } from "./store";
+import { DraftStore } from "./store";
 
 const NOW = new Date("2026-01-01T12:00:00Z");
 const DRAFT = {

@@ -3,10 +3,7 @@
  * killed: what a
  * participant has entered and the server has not confirmed, and the last screen.
  *
- * A record has two states. A *draft* changes with every answer. Once *queued*, its submission is
- * fixed, together with the idempotency key made when the form was first shown: however often it is
- * sent, after a lost answer or a reload, the server stores it once. The record is deleted only when
- * the server has confirmed it.
+ * Forms are kept as `StoredForms` says: as drafts, then queued until the server has confirmed them.
  *
  * A refusal to take part waits in the same way until the server has recorded it: the newest refusal
  * or
@@ -17,26 +14,12 @@
  * session or the pairing ends. An unfinished consent is kept with its ticked statements and its
  * signature for as long as it is on the screen, and is never sent automatically.
  */
-import type { RefusalWish, Submission, TabletState } from "@shared/api/types";
-import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
-import { uuid } from "@shared/uuid";
-import { type DBSchema, type IDBPDatabase, openDB } from "idb";
+import type { RefusalWish, TabletState } from "@shared/api/types";
+import { type FormTables, formId, StoredForms } from "@shared/forms/storedForms";
+import { type IDBPDatabase, openDB } from "idb";
 import type { Signing } from "../screens/consentToSend";
 
-export interface StoredForm {
-  /** Session and administration: one form, filled in once. */
-  readonly id: string;
-  readonly sessionId: string;
-  readonly administration: string;
-  readonly idempotencyKey: string;
-  readonly startedAt: string;
-  readonly draft: FormDraft;
-  /** The submission as it is sent; null while it is still being filled in. */
-  readonly queued: Submission | null;
-}
-
-interface Tables extends DBSchema {
-  kept: { key: string; value: StoredForm };
+interface Tables extends FormTables {
   screen: { key: string; value: TabletState };
   signing: { key: string; value: Signing };
   wish: { key: string; value: RefusalWish };
@@ -45,91 +28,30 @@ interface Tables extends DBSchema {
 /** The key of the only record in this store. */
 const LAST = "last";
 
-const OLD_MS = 48 * 3_600_000;
-
-export const formId = (sessionId: string, administration: string): string =>
-  `${sessionId}/${administration}`;
-
 const signingKey = ({ session_id, step_index }: TabletState): string =>
   `${session_id}/${step_index}`;
 
-export class DraftStore {
+export class DraftStore extends StoredForms {
   readonly #database: Promise<IDBPDatabase<Tables>>;
 
   constructor(name = "reembody-tablet") {
-    this.#database = openDB<Tables>(name, 4, {
-      upgrade: (database, before) => {
-        if (before < 1) database.createObjectStore("kept", { keyPath: "id" });
-        if (before < 2) database.createObjectStore("screen");
-        if (before < 3) database.createObjectStore("signing");
-        if (before < 4) database.createObjectStore("wish");
+    const database = openDB<Tables>(name, 4, {
+      upgrade: (opened, before) => {
+        if (before < 1) opened.createObjectStore("kept", { keyPath: "id" });
+        if (before < 2) opened.createObjectStore("screen");
+        if (before < 3) opened.createObjectStore("signing");
+        if (before < 4) opened.createObjectStore("wish");
       },
       // A page of a newer version is waiting to open the database.
       blocking: (_current, _wanted, event) => (event.target as IDBDatabase).close(),
     });
-  }
-
-  /** The record of this form; a new one, with a key of its own, if there is none yet. */
-  async open(sessionId: string, administration: string, now: Date): Promise<StoredForm> {
-    const id = formId(sessionId, administration);
-    const database = await this.#database;
-    const transaction = database.transaction("kept", "readwrite");
-    const existing = await transaction.store.get(id);
-    const stored = existing ?? {
-      id,
-      sessionId,
-      administration,
-      idempotencyKey: uuid(),
-      startedAt: now.toISOString(),
-      draft: EMPTY_DRAFT,
-      queued: null,
-    };
-    if (existing === undefined) await transaction.store.put(stored);
-    await transaction.done;
-    // An older version may have stored it with fewer fields.
-    return { ...stored, draft: { ...EMPTY_DRAFT, ...stored.draft } };
-  }
-
-  /** Store the newest answers; a form that is already queued or confirmed is left as it is. */
-  async keep(id: string, draft: FormDraft): Promise<void> {
-    const transaction = (await this.#database).transaction("kept", "readwrite");
-    const known = await transaction.store.get(id);
-    if (known !== undefined && known.queued === null) {
-      await transaction.store.put({ ...known, draft });
-    }
-    await transaction.done;
-  }
-
-  /** Fix the submission to be sent. The first submission of a form is the only one. */
-  async queue(id: string, submission: Submission): Promise<Submission> {
-    // Strict: written to the disk, not only handed to the system, before the participant is told it
-    // is safe.
-    const options = { durability: "strict" } as const;
-    const transaction = (await this.#database).transaction("kept", "readwrite", options);
-    const known = await transaction.store.get(id);
-    if (known === undefined) throw new Error(`There is no draft ${id} on this tablet.`);
-    const queued = known.queued ?? submission;
-    await transaction.store.put({ ...known, queued });
-    await transaction.done;
-    return queued;
-  }
-
-  /** Return a queued form to editing, after the server has rejected it and stored nothing. */
-  async reopen(id: string): Promise<void> {
-    const transaction = (await this.#database).transaction("kept", "readwrite");
-    const known = await transaction.store.get(id);
-    if (known !== undefined) await transaction.store.put({ ...known, queued: null });
-    await transaction.done;
-  }
-
-  /** The forms of this session that wait to be sent. */
-  async waiting(sessionId: string): Promise<readonly StoredForm[]> {
-    const all = await (await this.#database).getAll("kept");
-    return all.filter((stored) => stored.sessionId === sessionId && stored.queued !== null);
+    // The types of idb do not see that a database with more stores has those of a smaller one, too.
+    super(database as unknown as Promise<IDBPDatabase<FormTables>>);
+    this.#database = database;
   }
 
   /** Delete a form that the server has stored; it is not shown again. */
-  async forget(id: string): Promise<void> {
+  override async forget(id: string): Promise<void> {
     const transaction = (await this.#database).transaction(["kept", "screen"], "readwrite");
     await transaction.objectStore("kept").delete(id);
     const screens = transaction.objectStore("screen");
@@ -208,20 +130,6 @@ export class DraftStore {
     const known = await transaction.store.get(sessionId);
     if (known?.wish_id === wishId) await transaction.store.delete(sessionId);
     await transaction.done;
-  }
-
-  /** Delete drafts that have not changed for two days; submissions that wait to be sent stay. */
-  async forgetOld(now: Date): Promise<void> {
-    const transaction = (await this.#database).transaction("kept", "readwrite");
-    for (const form of await transaction.store.getAll()) {
-      const age = now.getTime() - Date.parse(form.startedAt);
-      if (form.queued === null && age > OLD_MS) await transaction.store.delete(form.id);
-    }
-    await transaction.done;
-  }
-
-  async close(): Promise<void> {
-    (await this.#database).close();
   }
 }
 

@@ -2,11 +2,12 @@
 import { tablet } from "@shared/api/endpoints";
 import type { ApiError } from "@shared/api/request";
 import type { Administration, Answer, Submission, TabletState } from "@shared/api/types";
+import { deliver } from "@shared/forms/deliver";
 import type { FormDraft } from "@shared/forms/draft";
+import { type StoredForm, submissionOf } from "@shared/forms/storedForms";
 import { useCallback, useEffect, useRef, useState } from "react";
 import { type Signing, UNSIGNED } from "../screens/consentToSend";
-import { deliver } from "./deliver";
-import { DraftStore, type StoredForm } from "./store";
+import { DraftStore } from "./store";
 
 export const drafts = new DraftStore();
 
@@ -97,7 +98,7 @@ export function useStoredForm(
     const opened = form.current;
     if (opened === null) return;
     setPhase({ name: "sending", offline: false });
-    const submission = submissionOf(opened, administration, language, answers, draft);
+    const submission = submissionOf({ ...opened, draft }, administration, language, answers);
     void drafts.queue(opened.id, submission).then((queued) => attempt(opened.id, queued));
   };
   const retry = () => {
@@ -107,26 +108,6 @@ export function useStoredForm(
     });
   };
   return { phase, storeDraft, send, retry };
-}
-
-function submissionOf(
-  kept: StoredForm,
-  administration: Administration,
-  language: string,
-  answers: Readonly<Record<string, Answer>>,
-  draft: FormDraft,
-): Submission {
-  return {
-    idempotency_key: kept.idempotencyKey,
-    administration: administration.key,
-    answers,
-    shown_order: administration.item_order,
-    seed: administration.seed,
-    language,
-    started_at_utc: kept.startedAt,
-    timings: draft.timings,
-    item_traces: draft.traces,
-  };
 }
 
 /** A signature changes many times a second, so it is stored after a pause. */

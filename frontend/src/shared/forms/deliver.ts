@@ -1,16 +1,16 @@
 /**
  * Send one queued form to the server, and return how it ended.
  *
- *     stored       the server has it (or had it already): the tablet deletes it
+ *     stored       the server has it (or had it already): the device deletes it
  *     later        no connection, or the server cannot take it now: try again
- *     unpaired     the tablet has lost its session: kept until it is paired again
+ *     unpaired     the device has lost its session: kept until it is paired again
  *     held         this form is not due now: kept, the experimenter decides
- *     superseded   the experimenter has recorded this form already: the tablet deletes it
+ *     superseded   the experimenter has recorded this form already: the device deletes it
  *     refused      the answers are invalid: returned to be corrected
  */
-import { ApiError } from "@shared/api/request";
-import type { Receipt, Submission } from "@shared/api/types";
-import type { DraftStore } from "./store";
+import { ApiError } from "../api/request";
+import type { Receipt, Submission } from "../api/types";
+import type { StoredForms } from "./storedForms";
 
 export type Delivery =
   | { readonly kind: "stored" | "later" | "unpaired" | "superseded" }
@@ -26,7 +26,7 @@ const sent = new Map<string, Promise<Delivery>>();
  * first.
  */
 export function deliver(
-  store: DraftStore,
+  store: StoredForms,
   id: string,
   submission: Submission,
   submit: Submit,
@@ -43,7 +43,7 @@ export function deliver(
 }
 
 async function sendForm(
-  store: DraftStore,
+  store: StoredForms,
   id: string,
   submission: Submission,
   submit: Submit,
