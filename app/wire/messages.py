@@ -15,6 +15,8 @@ SUBPROTOCOL = "reembody.v1"
 REPORT_STREAM = "reports"
 MAX_SEQ = 2**53
 MAX_EPOCH = 2**31 - 1
+GOALS = ("Hips", "Head", "LeftHand", "RightHand", "LeftLowerLeg", "RightLowerLeg")
+"""The parts of the body whose goals may be tracked: those of inverse kinematics."""
 
 Seconds = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1e9)]
 Seq = Annotated[int, Field(ge=0, lt=MAX_SEQ)]
@@ -24,6 +26,13 @@ Count = Annotated[int, Field(ge=0, lt=2**31)]
 Nanoseconds = Annotated[int, Field(ge=0, lt=2**63)]
 # PostgreSQL stores no NUL in a text.
 Name = Annotated[str, Field(pattern=r"^[^\x00]*$")]
+Goal = Literal["Hips", "Head", "LeftHand", "RightHand", "LeftLowerLeg", "RightLowerLeg"]
+GoalState = Literal["tracked", "inferred", "lost"]
+"""How a goal is known: measured; computed from the other goals; or not at all at the moment."""
+Metres = Annotated[float, Field(allow_inf_nan=False, ge=-10.0, le=10.0)]
+Length = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=10.0)]
+Vector = tuple[Metres, Metres, Metres]
+Cosine = Annotated[float, Field(allow_inf_nan=False, ge=-1.001, le=1.001)]
 
 
 class Message(BaseModel):
@@ -39,7 +48,9 @@ class Hello(Message):
     avatar is refused: the record would name an avatar that the participant did not see. `fingers`:
     this run sends the streams of fingers, too, with every frame from its first one on; phases
     without them are then reported as incomplete. `changes_avatar`: whether it can carry out an
-    `AvatarOrder`, that is, change a physics avatar while it runs.
+    `AvatarOrder`, that is, change a physics avatar while it runs. `goals`: this run reports how the
+    goals of the body are known, and every change (`GoalsReport`). `panels`: whether it shows the
+    texts and forms of a `PanelOrder`. `calibrates`: whether it carries out a `CalibrationOrder`.
     """
 
     type: Literal["hello"] = "hello"
@@ -51,6 +62,9 @@ class Hello(Message):
     )
     fingers: bool = False
     changes_avatar: bool = Field(default=False, exclude_if=lambda value: not value)
+    goals: bool = Field(default=False, exclude_if=lambda value: not value)
+    panels: bool = Field(default=False, exclude_if=lambda value: not value)
+    calibrates: bool = Field(default=False, exclude_if=lambda value: not value)
 
 
 PhaseEvent = Literal[
@@ -129,8 +143,103 @@ class AvatarChangeReport(Message):
     )
 
 
+class GoalsReport(Message):
+    """Reports how every goal is known from a frame on; sent when the run begins and on a change.
+
+    `frame_seq`: the seq, in the streams of this epoch, of the first frame to which it applies.
+    `source`: where the poses come from, such as controllers, hands, body, or script.
+    """
+
+    kind: Literal["goals"] = "goals"
+    t_s: Seconds
+    frame_seq: Seq
+    source: Name = Field(max_length=40)
+    states: dict[Goal, GoalState]
+
+    @model_validator(mode="after")
+    def _all_goals(self) -> Self:
+        missing = [goal for goal in GOALS if goal not in self.states]
+        if missing:
+            raise ValueError(f"states must name all six goals; missing: {', '.join(missing)}")
+        return self
+
+
+class Pose(Message):
+    """A position in metres and a rotation as a quaternion w, x, y, z."""
+
+    position_m: Vector
+    rotation: tuple[Cosine, Cosine, Cosine, Cosine]
+
+
+class CalibrationReport(Message):
+    """Reports a completed calibration of the participant's body, which is used from now on.
+
+    `revision`: that of the `CalibrationOrder` it answers; null if the headset made it by itself,
+    and `cause` says why: first, order, error (a goal was too far off) or reset (the origin moved).
+    `tracker_from_goal`: for each goal that is tracked, the pose of the part's joint in the frame of
+    what tracks it; for the head, that is the frame between the eyes. `residuals_m`: how far each
+    goal was off in the poses that test the calibration. `sources`: what each goal was tracked by.
+    `notices`: what the headset noticed, such as swapped_sides or bent_knees.
+    """
+
+    kind: Literal["calibration"] = "calibration"
+    t_s: Seconds
+    revision: Count | None = None
+    cause: Name = Field(max_length=40)
+    stature_m: Length
+    span_m: Length | None = None
+    eye_height_m: Length | None = None
+    tracker_from_goal: dict[Goal, Pose] = Field(default_factory=dict)
+    residuals_m: dict[Goal, Length] = Field(default_factory=dict)
+    sources: dict[Goal, Annotated[Name, Field(max_length=40)]] = Field(default_factory=dict)
+    notices: tuple[Annotated[Name, Field(max_length=40)], ...] = Field(default=(), max_length=20)
+
+
+class AddedLatencyReport(Message):
+    """Reports how much latency the headset's own computing adds in a phase.
+
+    `added_s`: by which what is shown is late, such as one frame if the physics runs in a worker;
+    `compensated_s`: how much of it was taken off the delay that the server ordered, which is
+    possible only if that is long enough. The avatar is then late by what was ordered, plus
+    `added_s` minus `compensated_s`. `runs_in`: where the body is computed.
+    """
+
+    kind: Literal["added_latency"] = "added_latency"
+    phase_id: Count
+    t_s: Seconds
+    added_s: Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1.0)]
+    compensated_s: Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1.0)]
+    runs_in: Literal["page", "worker"]
+
+    @model_validator(mode="after")
+    def _no_more_than_added(self) -> Self:
+        if self.compensated_s > self.added_s:
+            raise ValueError("compensated_s must be at most added_s")
+        return self
+
+
+class CallReport(Message):
+    """Reports that the participant called from inside the headset.
+
+    `stop`: wants to stop now, so a running phase is paused; `help`: wants to speak to the
+    experimenter; `taken_back`: no longer does.
+    """
+
+    kind: Literal["call"] = "call"
+    t_s: Seconds
+    what: Literal["stop", "help", "taken_back"]
+
+
 ReportBody = Annotated[
-    PhaseReport | MaterialisedReport | ContactReport | CompletionReport | AvatarChangeReport,
+    PhaseReport
+    | MaterialisedReport
+    | ContactReport
+    | CompletionReport
+    | AvatarChangeReport
+    | GoalsReport
+    | CalibrationReport
+    | AddedLatencyReport
+    | CallReport,
     Field(discriminator="kind"),
 ]
 
@@ -253,6 +362,40 @@ class AvatarOrder(Message):
     motors: dict[str, MotorOrder] = Field(default_factory=dict)
 
 
+class CalibrationOrder(Message):
+    """How the calibration should differ from the headset's own; replaces earlier orders.
+
+    `revision` rises with every change. `calibrate`: calibrate again now, and report it with this
+    revision; the step and its phase stay as they are. `shifts_m`: goal -> shift of the part's
+    joint, x to the right, y up and z backwards, in the axes that the part has in the T-pose. A new
+    calibration ends the shifts of the one before.
+    """
+
+    revision: int
+    calibrate: bool
+    shifts_m: dict[str, tuple[float, float, float]] = Field(default_factory=dict)
+
+
+class PanelOrder(Message):
+    """What the participant should read, answer or do beside the scene, in the session's language.
+
+    `title` and `text` are those of the current step, or the study's waiting text. `form`: the key
+    of the form to fill in inside the headset, which `GET /api/vr/form` returns. `answer`: where the
+    current form is answered; null if no form is due. `headset_off`: the step takes place outside
+    the headset, so the participant should take it off. `held`: the session waits for the
+    experimenter. `called`: the participant has called, and nobody has come yet.
+    """
+
+    language: str
+    title: str | None
+    text: str | None
+    form: str | None
+    answer: Literal["headset", "tablet", "oral"] | None
+    headset_off: bool
+    held: bool
+    called: bool
+
+
 class ParticipantInfo(Message):
     """The facts about the participant that the task needs; null until they are known."""
 
@@ -275,6 +418,11 @@ class HeadsetState(Message):
     participant: ParticipantInfo
     # Only sent once something was changed, so that older clients notice nothing.
     avatar_changes: AvatarOrder | None = Field(default=None, exclude_if=lambda value: value is None)
+    # Only for clients that said `panels`, and `calibrates` once something was ordered.
+    panel: PanelOrder | None = Field(default=None, exclude_if=lambda value: value is None)
+    calibration: CalibrationOrder | None = Field(
+        default=None, exclude_if=lambda value: value is None
+    )
 
 
 class Welcome(Message):

@@ -52,6 +52,44 @@ AVATAR_NOT_CHANGED: Json = {
     "problem": "the model has no convex piece of LeftHand",
     "held_rad": {},
 }
+GOALS: Json = {
+    "kind": "goals",
+    "t_s": 9.5,
+    "frame_seq": 0,
+    "source": "controllers",
+    "states": {
+        "Hips": "inferred",
+        "Head": "tracked",
+        "LeftHand": "tracked",
+        "RightHand": "lost",
+        "LeftLowerLeg": "inferred",
+        "RightLowerLeg": "inferred",
+    },
+}
+CALIBRATION: Json = {
+    "kind": "calibration",
+    "t_s": 8.25,
+    "revision": None,
+    "cause": "first",
+    "stature_m": 1.72,
+    "span_m": 1.75,
+    "eye_height_m": 1.61,
+    "tracker_from_goal": {
+        "Head": {"position_m": [0.0, -0.09, 0.08], "rotation": [1.0, 0.0, 0.0, 0.0]}
+    },
+    "residuals_m": {"LeftHand": 0.012, "RightHand": 0.008},
+    "sources": {"Head": "viewer", "LeftHand": "controller", "RightHand": "controller"},
+    "notices": ["bent_knees"],
+}
+ADDED_LATENCY: Json = {
+    "kind": "added_latency",
+    "phase_id": 2,
+    "t_s": 12.5,
+    "added_s": 0.0111,
+    "compensated_s": 0.0,
+    "runs_in": "worker",
+}
+CALL: Json = {"kind": "call", "t_s": 30.0, "what": "stop"}
 PROBED: Json = {
     "type": "probed",
     "client_sent_s": 3.0,
@@ -116,6 +154,28 @@ FROM_CLIENT: list[tuple[str, Json]] = [
             "changes_avatar": True,
         },
     ),
+    (
+        "hello_of_one_that_runs_the_whole_study",
+        {
+            "type": "hello",
+            "protocol": 1,
+            "client": "my client 0.6",
+            "epoch": None,
+            "avatars": ["physics", "delayed_copy"],
+            "goals": True,
+            "panels": True,
+            "calibrates": True,
+        },
+    ),
+    ("goals", report(GOALS)),
+    ("calibration", report(CALIBRATION)),
+    (
+        "calibration_as_ordered",
+        report({**CALIBRATION, "cause": "order", "revision": 41, "span_m": None}),
+    ),
+    ("added_latency", report(ADDED_LATENCY)),
+    ("call_to_stop", report(CALL)),
+    ("call_for_help", report({**CALL, "what": "help"})),
     ("avatar_changes", report(AVATAR_CHANGED)),
     ("avatar_changes_that_failed", report(AVATAR_NOT_CHANGED)),
     ("materialised", report({"kind": "materialised", "t_s": 10.125})),
@@ -199,6 +259,31 @@ STATE_OF_A_CHANGED_AVATAR: Json = {
         },
     },
 }
+STATE_WITH_A_FORM: Json = {
+    **STATE,
+    "step_index": 7,
+    "step_kind": "questionnaire",
+    "phase": None,
+    "panel": {
+        "language": "de",
+        "title": "Fragebogen",
+        "text": None,
+        "form": "block1.hand.karas2020#1",
+        "answer": "headset",
+        "headset_off": False,
+        "held": False,
+        "called": False,
+    },
+}
+STATE_AFTER_A_SHIFT: Json = {
+    **STATE,
+    "calibration": {
+        "revision": 41,
+        "calibrate": False,
+        "shifts_m": {"LeftHand": [0.01, 0.0, -0.02]},
+    },
+}
+STATE_OF_ANOTHER_BODY: Json = {**STATE, "phase": {**STATE["phase"], "body": "robot"}}
 POSITIONS: list[Json] = [
     {"stream": "target", "epoch": 1, "next_seq": 540},
     {"stream": "reports", "epoch": 1, "next_seq": 3},
@@ -246,6 +331,10 @@ FROM_SERVER: list[tuple[str, Json]] = [
     ("state", STATE),
     ("state_of_a_practice", STATE_OF_PRACTICE),
     ("state_of_a_changed_avatar", STATE_OF_A_CHANGED_AVATAR),
+    ("state_with_a_form_in_the_headset", STATE_WITH_A_FORM),
+    ("state_after_a_tracker_was_shifted", STATE_AFTER_A_SHIFT),
+    ("state_of_another_body", STATE_OF_ANOTHER_BODY),
+    ("welcome_to_a_study_with_bodies", {**WELCOME, "bodies": ["robot"]}),
     ("state_before_the_start", STATE_BEFORE),
     ("ack", {"type": "ack", "positions": POSITIONS}),
     ("resend", {"type": "resend", **POSITIONS[0]}),
@@ -274,6 +363,13 @@ REFUSED_CLIENT: list[tuple[str, Json]] = [
     ),
     ("held_angle_is_beyond_range", report({**AVATAR_CHANGED, "held_rad": {"HeadX": 7.5}})),
     ("revision_is_negative", report({**AVATAR_CHANGED, "revision": -1})),
+    ("goals_without_the_hips", report({**GOALS, "states": {"Head": "tracked"}})),
+    ("unknown_state_of_a_goal", report({**GOALS, "states": {**GOALS["states"], "Head": "seen"}})),
+    ("unknown_goal", report({**GOALS, "states": {**GOALS["states"], "Tail": "tracked"}})),
+    ("stature_is_negative", report({**CALIBRATION, "stature_m": -1.7})),
+    ("residual_of_an_unknown_goal", report({**CALIBRATION, "residuals_m": {"Tail": 0.1}})),
+    ("compensated_more_than_added", report({**ADDED_LATENCY, "compensated_s": 0.5})),
+    ("unknown_call", report({**CALL, "what": "pizza"})),
     ("time_is_null", report({"kind": "materialised", "t_s": None})),
     ("time_is_negative", report({**CONTACT, "end_s": -1.0})),
     ("time_is_beyond_range", report({**PHASE, "t_s": 1.0e9 + 1.0})),

@@ -1,5 +1,5 @@
 /** The telemetry interface of a headset's page; the same in the page's thread and in a worker. */
-import type { Notice } from "./connection/connection";
+import type { Abilities, Notice } from "./connection/connection";
 import type { Failure } from "./failure";
 import type { Durability } from "./journal/indexedDb";
 import type { Limits } from "./limits";
@@ -92,6 +92,8 @@ export interface TelemetryOptions {
   readonly name: string;
   /** Whether this client sends the streams of fingers with every frame; it does not by default. */
   readonly fingers?: boolean;
+  /** What else the client can do; the server sends it only what it can carry out. */
+  readonly abilities?: Abilities;
   /** The name of the journal on this device: use the id of the session. */
   readonly storageKey: string;
   readonly durability?: Durability;

@@ -55,6 +55,7 @@ export class DirectClient extends ClientEvents implements TelemetryClient {
       address: options,
       name: options.name,
       fingers: options.fingers ?? false,
+      abilities: options.abilities ?? {},
       hooks: {
         onWelcome: (welcome) => this.#welcomed(welcome),
         onState: (state) => {

@@ -1,6 +1,6 @@
 /** The telemetry client of the headset's page: `docs/protocol.md` in TypeScript. */
 export type { Level, Status, TelemetryClient, TelemetryOptions } from "./client";
-export type { Notice } from "./connection/connection";
+export type { Abilities, Notice } from "./connection/connection";
 export { type Failure, TelemetryError } from "./failure";
 export { deleteJournal, type LeftJournal, leftJournals } from "./journal/indexedDb";
 export { DEFAULT_LIMITS, type Limits } from "./limits";
@@ -13,5 +13,12 @@ export {
   type StreamName,
   VALUES_PER_FRAME,
 } from "./wire/batch";
-export type { ReportBody } from "./wire/fromClient";
-export type { HeadsetState, PhaseOrder, Welcome } from "./wire/fromServer";
+export { GOAL_NAMES, type GoalName, type GoalState, type ReportBody } from "./wire/fromClient";
+export type {
+  AvatarOrder,
+  CalibrationOrder,
+  HeadsetState,
+  PanelOrder,
+  PhaseOrder,
+  Welcome,
+} from "./wire/fromServer";

@@ -25,6 +25,20 @@ import { Conversation, type Parts } from "./conversation";
  */
 export type Notice = Flag | RefusedReport;
 
+/** What a client can do, as its hello says; nothing of it by default. */
+export interface Abilities {
+  /** The kinds of avatar that it can show; only `delayed_copy` by default. */
+  readonly avatars?: readonly string[];
+  /** It can change a physics avatar while it runs: the state has `avatar_changes`. */
+  readonly changesAvatar?: boolean;
+  /** It reports how the goals are known (`goals`), from the first frame on. */
+  readonly goals?: boolean;
+  /** It shows texts and forms: the state has a `panel`. */
+  readonly panels?: boolean;
+  /** It calibrates again and shifts trackers when ordered: the state has `calibration`. */
+  readonly calibrates?: boolean;
+}
+
 export interface Hooks {
   /** Called before anything is sent; a returned failure ends the connection. */
   readonly onWelcome: (welcome: Welcome) => Promise<Failure | null>;
@@ -40,6 +54,7 @@ export interface ConnectionParts extends Omit<Parts, "onFailure"> {
   readonly name: string;
   /** Whether the client sends the streams of fingers. */
   readonly fingers?: boolean;
+  readonly abilities?: Abilities;
   readonly makeSocket: MakeSocket;
   readonly hooks: Hooks;
 }
@@ -117,14 +132,20 @@ export class Connection {
   }
 
   get #hello(): string {
-    const { name, fingers = false } = this.#parts;
+    const { name, fingers = false, abilities = {} } = this.#parts;
+    const { avatars, changesAvatar, goals, panels, calibrates } = abilities;
     return textOf({
       type: "hello",
       protocol: PROTOCOL_VERSION,
       client: name,
       epoch: this.epoch,
-      // A server of an older version does not know the field.
+      // A server of an older version does not know these fields.
       ...(fingers && { fingers }),
+      ...(avatars && { avatars: [...avatars] }),
+      ...(changesAvatar && { changes_avatar: true }),
+      ...(goals && { goals }),
+      ...(panels && { panels }),
+      ...(calibrates && { calibrates }),
     });
   }
 

@@ -31,6 +31,12 @@ const Hello = v.strictObject({
   fingers: v.optional(v.boolean()),
   /** Whether it can change a physics avatar while it runs; it cannot by default. */
   changes_avatar: v.optional(v.boolean()),
+  /** Whether this run reports how the goals are known, and every change of it. */
+  goals: v.optional(v.boolean()),
+  /** Whether it shows the texts and forms of the state's `panel`. */
+  panels: v.optional(v.boolean()),
+  /** Whether it carries out the state's `calibration`. */
+  calibrates: v.optional(v.boolean()),
 });
 
 /** What the headset did to the clock of a phase, at its own monotonic time. */
@@ -91,8 +97,93 @@ const AvatarChangeReport = v.strictObject({
   held_rad: v.record(Name40, v.pipe(v.number(), v.minValue(-7), v.maxValue(7))),
 });
 
+/** The parts of the body whose goals may be tracked, in the order of the inverse kinematics. */
+export const GOAL_NAMES = [
+  "Hips",
+  "Head",
+  "LeftHand",
+  "RightHand",
+  "LeftLowerLeg",
+  "RightLowerLeg",
+] as const;
+export type GoalName = (typeof GOAL_NAMES)[number];
+
+/** How a goal is known: measured; computed from the other goals; or not at all at the moment. */
+const GoalState = v.picklist(["tracked", "inferred", "lost"]);
+export type GoalState = v.InferOutput<typeof GoalState>;
+
+/** How every goal is known from the frame `frame_seq` on; sent at the beginning and on a change. */
+const GoalsReport = v.strictObject({
+  kind: v.literal("goals"),
+  t_s: Seconds,
+  frame_seq: Seq,
+  source: Name40,
+  states: v.strictObject({
+    Hips: GoalState,
+    Head: GoalState,
+    LeftHand: GoalState,
+    RightHand: GoalState,
+    LeftLowerLeg: GoalState,
+    RightLowerLeg: GoalState,
+  }),
+});
+
+const Metres = v.pipe(v.number(), v.finite(), v.minValue(-10), v.maxValue(10));
+const Length = v.pipe(v.number(), v.finite(), v.minValue(0), v.maxValue(10));
+const Cosine = v.pipe(v.number(), v.finite(), v.minValue(-1.001), v.maxValue(1.001));
+const GoalKey = v.picklist(GOAL_NAMES);
+
+/** A completed calibration, used from now on; `tracker_from_goal` as docs/protocol.md says. */
+const CalibrationReport = v.strictObject({
+  kind: v.literal("calibration"),
+  t_s: Seconds,
+  /** The revision of the order that it answers; null if the headset made it by itself. */
+  revision: v.nullable(Count),
+  /** first, order, error or reset */
+  cause: Name40,
+  stature_m: Length,
+  span_m: v.nullable(Length),
+  eye_height_m: v.nullable(Length),
+  tracker_from_goal: v.record(
+    GoalKey,
+    v.strictObject({
+      position_m: v.tuple([Metres, Metres, Metres]),
+      rotation: v.tuple([Cosine, Cosine, Cosine, Cosine]),
+    }),
+  ),
+  residuals_m: v.record(GoalKey, Length),
+  sources: v.record(GoalKey, Name40),
+  notices: v.pipe(v.array(Name40), v.maxLength(20)),
+});
+
+const Added = v.pipe(v.number(), v.finite(), v.minValue(0), v.maxValue(1));
+
+/** What the headset's own computing adds to a phase's latency, and how much it took off again. */
+const AddedLatencyReport = v.pipe(
+  v.strictObject({
+    kind: v.literal("added_latency"),
+    phase_id: Count,
+    t_s: Seconds,
+    added_s: Added,
+    compensated_s: Added,
+    runs_in: v.picklist(["page", "worker"]),
+  }),
+  v.check((body) => body.compensated_s <= body.added_s, "compensated_s must be at most added_s"),
+);
+
+/** The participant called from inside the headset; `stop` pauses a running phase. */
+const CallReport = v.strictObject({
+  kind: v.literal("call"),
+  t_s: Seconds,
+  what: v.picklist(["stop", "help", "taken_back"]),
+});
+
 const Body = v.variant("kind", [
   AvatarChangeReport,
+  GoalsReport,
+  CalibrationReport,
+  AddedLatencyReport,
+  CallReport,
   PhaseReport,
   MaterialisedReport,
   ContactReport,

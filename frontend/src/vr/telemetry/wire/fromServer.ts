@@ -30,6 +30,8 @@ const PhaseOrder = v.object({
   resuming: v.boolean(),
   // A practice ends once so many tasks are completed; an older server does not send it.
   until_completions: v.optional(v.nullable(whole), null),
+  /** The body to wear, one of the welcome's `bodies`; left out for that of the configuration. */
+  body: v.optional(v.string()),
 });
 export type PhaseOrder = v.InferOutput<typeof PhaseOrder>;
 
@@ -55,6 +57,31 @@ const AvatarOrder = v.object({
 });
 export type AvatarOrder = v.InferOutput<typeof AvatarOrder>;
 
+/** How the calibration should differ from the headset's own; replaces earlier orders. */
+const CalibrationOrder = v.object({
+  revision: whole,
+  /** Calibrate again now, and report it with this revision. */
+  calibrate: v.boolean(),
+  /** Goal -> shift of the part's joint, in the axes that the part has in the T-pose. */
+  shifts_m: v.record(v.string(), v.tuple([v.number(), v.number(), v.number()])),
+});
+export type CalibrationOrder = v.InferOutput<typeof CalibrationOrder>;
+
+/** What the participant should read, answer or do beside the scene, in the session's language. */
+const PanelOrder = v.object({
+  language: v.string(),
+  title: v.nullable(v.string()),
+  text: v.nullable(v.string()),
+  /** The key of the form to fill in inside the headset; `GET /api/vr/form` returns it. */
+  form: v.nullable(v.string()),
+  /** Where the current form is answered; null if none is due. */
+  answer: v.nullable(v.picklist(["headset", "tablet", "oral"])),
+  headset_off: v.boolean(),
+  held: v.boolean(),
+  called: v.boolean(),
+});
+export type PanelOrder = v.InferOutput<typeof PanelOrder>;
+
 /** The state of the session, as the headset needs it. */
 const HeadsetState = v.object({
   type: v.literal("state"),
@@ -71,6 +98,10 @@ const HeadsetState = v.object({
     stature_m: v.nullable(v.number()),
   }),
   avatar_changes: v.optional(AvatarOrder),
+  /** Only for clients that said `panels`. */
+  panel: v.optional(PanelOrder),
+  /** Only for clients that said `calibrates`, once something was ordered. */
+  calibration: v.optional(CalibrationOrder),
 });
 export type HeadsetState = v.InferOutput<typeof HeadsetState>;
 
@@ -91,6 +122,8 @@ const Welcome = v.object({
   texts: v.record(v.string(), v.unknown()),
   positions: v.array(StreamPosition),
   state: HeadsetState,
+  /** The bodies that the study's conditions prescribe; left out if there are none. */
+  bodies: v.optional(v.array(v.string())),
 });
 export type Welcome = v.InferOutput<typeof Welcome>;
 
