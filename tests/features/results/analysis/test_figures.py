@@ -7,6 +7,7 @@ import pytest
 
 from app.features.results.analysis.figures import (
     completions_drawing,
+    contact_map_drawing,
     contacts_drawing,
     embodiment_drawings,
     joint_error_drawing,
@@ -15,7 +16,7 @@ from app.features.results.analysis.figures import (
 )
 from app.features.results.analysis.figures.by_latency import mean_interval
 from app.features.results.analysis.figures.drawing import Drawing, limb_note
-from app.features.results.analysis.figures.fingers import joint_error_fingers_drawings
+from app.features.results.analysis.figures.fingers import joint_error_fingers_drawings, mark_fingers
 from app.features.results.analysis.figures.joint_errors import BODY_PARTS, JOINTS_BY_PART
 from app.science.joint_error import ERROR_JOINTS
 from app.science.skeleton import FINGER_PARTS
@@ -33,6 +34,7 @@ def _phases(completions: dict[str, dict[float, int]], limb: str = "hand") -> pd.
                 "position": 1,
                 "latency_ms": latency,
                 "completions": count,
+                "fingers": False,
             }
             for code, by_latency in completions.items()
             for latency, count in by_latency.items()
@@ -205,8 +207,39 @@ def test_the_contact_time_of_a_finger_is_the_union_over_its_parts() -> None:
             ("RightHand", 1.0),
         )
     ]
+    phases = phases.assign(fingers=True)
     _, parts = _traces(contacts_drawing(phases, pd.DataFrame(contacts)), "0 ms")
     assert dict(zip(parts["x"], parts["y"], strict=True)) == {"RightHand": 2.0, "RightThumb": 3.0}
+
+
+def test_means_by_finger_are_over_phases_with_fingers_only() -> None:
+    """A phase that sent no fingers is no zero: it enters the mean of the hand, not of fingers."""
+    contacts = pd.DataFrame(
+        [
+            _contact("P-1", 0.0, "RightThumbDistal", 1.0, 4.0),
+            _contact("P-1", 0.0, "RightHand", 1.0, 3.0),
+            _contact("P-2", 0.0, "RightHand", 1.0, 2.0),
+            _contact("P-3", 125.0, "RightHand", 1.0, 2.0),
+        ]
+    )
+    phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}, "P-3": {125.0: 1}})
+    streams = pd.DataFrame({"session_id": ["P-4"], "phase_id": [0], "stream": ["actual_fingers"]})
+    more = pd.concat((phases, _phases({"P-4": {0.0: 1}})), ignore_index=True)
+    drawing = contacts_drawing(mark_fingers(more, streams, contacts), contacts)
+    drawn = drawing.data[drawing.data["what"] == "body parts"]
+    assert {
+        (row.of, row.latency_ms): (row.mean_s_per_phase, row.n) for row in drawn.itertuples()
+    } == {
+        ("RightHand", 0.0): (1.0, 1),
+        ("RightHand", 125.0): (1.0, 1),
+        ("RightPalm", 0.0): (1.0, 2),
+        ("RightThumb", 0.0): (1.5, 2),
+    }
+    assert "Fingers: only phases in which they were recorded, n = 2." in drawing.caption
+    figure = contact_map_drawing(mark_fingers(more, streams, contacts), contacts).as_json()
+    assert figure is not None
+    unknown = [dict(zip(one["y"], one["z"], strict=True)) for one in figure["data"]][1]
+    assert unknown == {"RightHand": [1.0], "RightPalm": [None], "RightThumb": [None]}
 
 
 def test_fingers_have_a_figure_of_their_own_and_change_no_other() -> None:

@@ -1,7 +1,7 @@
 """Tests of the study's questions, answered from sessions with known answers."""
 
 import pytest
-from sqlalchemy import update
+from sqlalchemy import select, update
 
 from app.database import Database
 from app.features.design.studies import add_version, study_by_key
@@ -11,7 +11,7 @@ from app.features.results.analysis.questions.answers import DECLARED
 from app.features.results.analysis.questions.relations import group_of
 from app.features.results.analysis.questions.words import bounded, p_words
 from app.features.results.analysis.schemas import MeasureView, ResultView, StatisticsResults
-from app.models import Contact
+from app.models import Contact, Participant, StudySession
 from app.protocol.plan import Step
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.protocol.helpers import STUDY as FILE
@@ -83,8 +83,32 @@ def test_the_time_of_the_thumb_at_each_side_is_stated(database: Database) -> Non
     assert list(thumb) == ["0", "125", "350"]
     assert stated.columns[:2] == ["latency (ms)", "finger"]
     for row in thumb.values():
-        assert float(row[-1]) == pytest.approx(sum(map(float, row[2:-1])), abs=0.02)
-        assert float(row[-1]) > 0.0
+        assert float(row[-2]) == pytest.approx(sum(map(float, row[2:-2])), abs=0.02)
+        assert (float(row[-2]) > 0.0, row[-1]) == (True, "3")
+
+
+@pytest.mark.one_engine
+def test_sessions_without_fingers_enter_no_mean_by_finger(database: Database) -> None:
+    """Of three equal sessions one sent fingers: means by finger stay the same, with n = 1."""
+    _found(database, 3)
+    own = (Contact.surface_kind == "side", Contact.surface.like("hand/%"))
+    stated = []
+    for without in ((), ("P-0001", "P-0002")):
+        people = select(StudySession.id).join(Participant).where(Participant.code.in_(without))
+        with database.writing() as db:
+            db.execute(update(Contact).where(*own).values(body_part="RightThumbDistal"))
+            others = Contact.session_id.in_(people)
+            db.execute(update(Contact).where(*own, others).values(body_part="RightHand"))
+        with database.reading() as db:
+            found = _shares(answers_of(read_material(db, STUDY, "people")))
+        fingers, shares = (
+            next(one for one in found if one.key == f"contact_{key}_hand")
+            for key in ("fingers", "shares")
+        )
+        stated.append([row[:-1] for row in fingers.rows if row[1] == "thumb"])
+        counted, groups = {row[-1] for row in fingers.rows}, {row[1] for row in shares.rows}
+    assert stated[0] == stated[1]
+    assert (counted, "finger" in groups, "hand" in groups) == ({"1"}, False, True)
 
 
 def _shares(found: StatisticsResults) -> list[ResultView]:

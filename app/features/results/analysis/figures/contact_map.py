@@ -14,7 +14,7 @@ from app.features.results.analysis.figures.drawing import (
     participants,
     too_few,
 )
-from app.features.results.analysis.figures.fingers import by_finger
+from app.features.results.analysis.figures.fingers import by_finger, fingers_note
 from app.features.results.analysis.figures.theme import new_figure
 from app.protocol import COUNTED_KINDS
 
@@ -29,7 +29,10 @@ _APART = "\u001f"
 
 
 def contact_map_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
-    """Draw contact times from valid rows of phases and contacts, by limb and latency."""
+    """Draw contact times from valid rows of phases and contacts, by limb and latency.
+
+    The phases say whether their fingers were recorded (`mark_fingers`).
+    """
     tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     sides = contacts[contacts["surface_kind"] == "side"]
     n = participants(tasks)
@@ -40,22 +43,24 @@ def contact_map_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing
         return Drawing(KEY, TITLE, WHAT, n, empty=empty, group="tasks", wide=True)
     means = _means(tasks, sides)
     figure = _figure(means)
-    caption = f"{WHAT} {count_note(n)} {limb_note(tasks)}"
-    return drawn(KEY, TITLE, caption, n, figure, means).of_group("tasks", wide=True)
+    caption = f"{WHAT} {count_note(n)} {fingers_note(tasks)} {limb_note(tasks)}"
+    return drawn(KEY, TITLE, caption, n, figure, means.dropna()).of_group("tasks", wide=True)
 
 
 def _means(tasks: pd.DataFrame, sides: pd.DataFrame) -> pd.DataFrame:
-    """Return limb, latency_ms, body_part, side, mean_s_per_phase, for each existing combination."""
-    times = part_side_times(by_finger(sides))
+    """Return limb, latency_ms, body_part, side, mean_s_per_phase, n, for existing combinations.
+
+    The mean is not a number, and n is 0, where the part was not known at that latency.
+    """
+    times = part_side_times(by_finger(sides, tasks))
     times["what"] = times["body_part"] + _APART + times["side"]
     found = []
     for limb in [limb for limb in LIMBS if (tasks["limb"] == limb).any()]:
         own = mean_times(tasks[tasks["limb"] == limb], times)
-        for latency, row in own.iterrows():
-            for what, mean_s in row.items():
-                part, _, side = str(what).partition(_APART)
-                found.append((limb, float(str(latency)), part, side, float(mean_s)))
-    names = ("limb", "latency_ms", "body_part", "side", "mean_s_per_phase")
+        for latency, what, mean_s, n in own.cells():
+            part, _, side = what.partition(_APART)
+            found.append((limb, latency, part, side, mean_s, n))
+    names = ("limb", "latency_ms", "body_part", "side", "mean_s_per_phase", "n")
     return pd.DataFrame(found, columns=list(names))
 
 
@@ -77,10 +82,11 @@ def _figure(means: pd.DataFrame) -> go.Figure:
         sides, parts = sorted(own["side"].unique()), sorted(own["body_part"].unique())
         height += max(_ROW_PX * len(parts), 110)
         for column, latency in enumerate(latencies, start=1):
-            cell = own[own["latency_ms"] == latency].pivot(
-                index="body_part", columns="side", values="mean_s_per_phase"
-            )
-            figure.add_trace(_heat(cell.reindex(index=parts, columns=sides)), row=row, col=column)
+            at = own[own["latency_ms"] == latency]
+            cell = at.pivot(index="body_part", columns="side", values="mean_s_per_phase")
+            cell = cell.reindex(index=parts, columns=sides).fillna(0.0)
+            cell.loc[sorted(set(at[at["n"] == 0]["body_part"]))] = float("nan")
+            figure.add_trace(_heat(cell), row=row, col=column)
             figure.update_xaxes(type="category", row=row, col=column)
             if row == len(limbs):
                 figure.update_xaxes(title_text="side of the box", row=row, col=column)
@@ -101,7 +107,7 @@ def _figure(means: pd.DataFrame) -> go.Figure:
 
 def _heat(cell: pd.DataFrame) -> go.Heatmap:
     numbers = [
-        [0.0 if pd.isna(value) else float(value) for value in row] for row in cell.to_numpy()
+        [None if pd.isna(value) else float(value) for value in row] for row in cell.to_numpy()
     ]
     return go.Heatmap(
         x=[str(side) for side in cell.columns],

@@ -1,6 +1,9 @@
 """Draw joint errors by finger, for studies in which fingers were recorded.
 
 Contact times by finger are in the figures of contacts, whose rows then name fingers (`by_finger`).
+A contact can only name a finger in a phase whose headset sent fingers (`mark_fingers`): in any
+other phase the same touch is one of the hand. So times of fingers are means over phases with
+fingers alone, never over phases in which they are unknown.
 """
 
 from collections.abc import Iterator
@@ -13,9 +16,11 @@ from app.features.results.analysis.figures.joint_errors import HEAT, error_defin
 from app.features.results.analysis.figures.theme import new_figure
 from app.protocol import COUNTED_KINDS
 from app.science.skeleton import FINGER_PARTS, FINGERS, finger_of
+from app.wire import StreamName
 
 KEY, TITLE = "joint_error_fingers", "Joint error by added latency and finger"
 HOW = "Each value is the mean over the three joints of a finger, then over participants."
+PALM = "Palm"
 _SIDES = ("Left", "Right")
 HAND_FINGERS: tuple[str, ...] = tuple(f"{side}{finger}" for side in _SIDES for finger in FINGERS)
 
@@ -28,14 +33,63 @@ def hand_finger_of(part: str) -> str | None:
     return f"Left{finger}" if part.startswith("Left") else f"Right{finger}"
 
 
-def by_finger(contacts: pd.DataFrame) -> pd.DataFrame:
+def mark_fingers(
+    phases: pd.DataFrame, quality: pd.DataFrame, contacts: pd.DataFrame
+) -> pd.DataFrame:
+    """Return phases with a column `fingers`: whether the fingers were recorded in the phase.
+
+    They were if the stream of the body's fingers has a row in the table of quality, or if a contact
+    names a finger, as in phases that are not finished and have no quality yet.
+    """
+    streams = quality[quality["stream"] == StreamName.ACTUAL_FINGERS]
+    named = contacts[contacts["body_part"].isin(FINGER_PARTS)]
+    found = set(_phase_keys(streams)) | set(_phase_keys(named))
+    return phases.assign(fingers=[key in found for key in _phase_keys(phases)])
+
+
+def in_some_phases(tasks: pd.DataFrame) -> bool:
+    """Return whether fingers were recorded in some of these phases and not in others."""
+    return bool(tasks["fingers"].any() and not tasks["fingers"].all())
+
+
+def by_finger(contacts: pd.DataFrame, tasks: pd.DataFrame) -> pd.DataFrame:
     """Return contacts in which the three parts of a finger have the finger's name.
 
-    The union of their contacts is the time of the finger. Contacts of other parts stay as they are.
+    The union of their contacts is the time of the finger. If only some of the phases `tasks` have
+    fingers, a hand in those is named as its palm, because the hand of the others has fingers that
+    are not known apart. Contacts of other parts stay as they are.
     """
     names = {part: hand_finger_of(part) for part in FINGER_PARTS}
     own = contacts["body_part"]
-    return contacts.assign(body_part=own.map(names).where(own.isin(list(names)), own))
+    own = own.map(names).where(own.isin(list(names)), own)
+    if in_some_phases(tasks):
+        tracked = set(_phase_keys(tasks[tasks["fingers"]]))
+        known = [key in tracked for key in _phase_keys(contacts)]
+        palms = own.map({f"{side}Hand": f"{side}{PALM}" for side in _SIDES})
+        own = own.where(~pd.Series(known, own.index, dtype=bool) | palms.isna(), palms)
+    return contacts.assign(body_part=own)
+
+
+def is_of_fingers(part: str) -> bool:
+    """Return whether contacts of this part are known only where fingers were recorded."""
+    return finger_of(part) is not None or PALM in part
+
+
+def fingers_note(tasks: pd.DataFrame) -> str:
+    """Return a sentence with the participants whose fingers were recorded; empty without any."""
+    n = participants(tasks[tasks["fingers"]])
+    if n == 0:
+        return ""
+    palm = (
+        " There the hand without its fingers is the palm; the hand is that of the other phases."
+        if in_some_phases(tasks)
+        else ""
+    )
+    return f"Fingers: only phases in which they were recorded, n = {n}.{palm}"
+
+
+def _phase_keys(rows: pd.DataFrame) -> list[tuple[str, int]]:
+    return list(zip(rows["session_id"], rows["phase_id"], strict=True))
 
 
 def joint_error_fingers_drawings(errors: pd.DataFrame) -> Iterator[Drawing]:

@@ -19,7 +19,7 @@ from app.features.results.analysis.figures.contacts import contacts_drawing
 from app.features.results.analysis.figures.drawing import Drawing, Group
 from app.features.results.analysis.figures.embodiment import embodiment_drawings
 from app.features.results.analysis.figures.exclusions import exclusions_drawing
-from app.features.results.analysis.figures.fingers import joint_error_fingers_drawings
+from app.features.results.analysis.figures.fingers import joint_error_fingers_drawings, mark_fingers
 from app.features.results.analysis.figures.joint_error_blocks import joint_error_blocks_drawing
 from app.features.results.analysis.figures.joint_error_course import joint_error_course_drawing
 from app.features.results.analysis.figures.joint_errors import (
@@ -54,6 +54,11 @@ class Rows:
     def contacts(self) -> pd.DataFrame:
         """Return the valid rows of the table of contacts."""
         return self.counting(self.filtered.contacts)
+
+    @cached_property
+    def touching(self) -> pd.DataFrame:
+        """Return the valid phases, each with whether its fingers were recorded."""
+        return mark_fingers(self.phases, self.filtered.quality, self.filtered.contacts)
 
     def counting(self, table: pd.DataFrame) -> pd.DataFrame:
         """Return the valid rows of a table."""
@@ -104,8 +109,8 @@ FIGURES: tuple[Figure, ...] = (
     ),
     Figure.one("tasks", lambda rows: completions_drawing(rows.phases)),
     Figure.one("tasks", lambda rows: learning_drawing(rows.phases)),
-    Figure.one("tasks", lambda rows: contacts_drawing(rows.phases, rows.contacts), wide=True),
-    Figure.one("tasks", lambda rows: contact_map_drawing(rows.phases, rows.contacts)),
+    Figure.one("tasks", lambda rows: contacts_drawing(rows.touching, rows.contacts), wide=True),
+    Figure.one("tasks", lambda rows: contact_map_drawing(rows.touching, rows.contacts)),
     Figure.one("movement", lambda rows: joint_error_body_drawing(rows.errors)),
     Figure.one("movement", lambda rows: joint_error_drawing(rows.errors)),
     Figure.one("movement", lambda rows: achieved_drawing(rows.phases)),

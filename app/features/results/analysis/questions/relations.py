@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from app.features.results.analysis.figures.contacts import mean_times, part_side_times
+from app.features.results.analysis.figures.fingers import PALM, in_some_phases, mark_fingers
 from app.features.results.analysis.material import Material
 from app.features.results.analysis.questions.measures import Measure, completed
 from app.features.results.analysis.questions.words import TestReport, bounded, p_cell
@@ -33,7 +34,6 @@ _GROUPS = {
     "UpperLeg": "leg",
 }
 _ORDER = ("finger", "hand", "arm", "toes", "foot", "leg", "trunk and head")
-_PALM = "Palm"
 _SIDES = tuple(str(side) for side in Side)
 _NUMBERS = ("integer", "number", "likert")
 _CATEGORIES = ("choice", "boolean")
@@ -47,13 +47,16 @@ def group_of(part: str) -> str:
 
 
 def contact_share_results(material: Material) -> Iterator[TestReport]:
-    """Yield, for each limb, the share of contact time by group of body parts at each latency."""
-    tested = completed(material)
-    phases, contacts = tested.counting(tested.phases), tested.counting(tested.contacts)
-    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
-    sides = contacts[contacts["surface_kind"] == "side"]
+    """Yield, for each limb, the share of contact time by group of body parts at each latency.
+
+    If fingers were recorded in some phases only, they count as the hand everywhere.
+    """
+    tasks, sides = _tasks_and_sides(material)
     if sides.empty:
         return
+    whole_hands = in_some_phases(tasks)
+    if whole_hands:
+        sides = sides.assign(body_part=sides["body_part"].map(_whole_hand))
     times = part_side_times(sides).rename(columns={"body_part": "what"})
     times = times.groupby(["session_id", "phase_id", "what"])["time_s"].sum().reset_index()
     for limb, own in tasks.dropna(subset=["limb"]).groupby("limb", sort=False):
@@ -61,18 +64,17 @@ def contact_share_results(material: Material) -> Iterator[TestReport]:
         for latency, cell in own.groupby("latency_ms"):
             rows += _share_rows(f"{latency:g}", cell, times)
         if rows:
-            yield _shares_report(str(limb), rows)
+            yield _shares_report(str(limb), rows, whole_hands=whole_hands)
 
 
 def contact_finger_results(material: Material) -> Iterator[TestReport]:
     """Yield, for each hand task, the contact time of every finger with every side.
 
-    Nothing is yielded if no contact names a finger.
+    Only phases in which fingers were recorded count; without such contacts nothing is yielded.
     """
-    tested = completed(material)
-    phases, contacts = tested.counting(tested.phases), tested.counting(tested.contacts)
-    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
-    sides = contacts[contacts["surface_kind"] == "side"]
+    tasks, sides = _tasks_and_sides(material)
+    tasks = tasks[tasks["fingers"]]
+    sides = sides.merge(tasks[["session_id", "phase_id"]], on=["session_id", "phase_id"])
     fingers = sides[sides["body_part"].isin(FINGER_PARTS)]
     for limb, own in tasks.dropna(subset=["limb"]).groupby("limb", sort=False):
         used = fingers[fingers["limb"] == limb]
@@ -80,28 +82,46 @@ def contact_finger_results(material: Material) -> Iterator[TestReport]:
             continue
         named = used.assign(body_part=used["body_part"].map(finger_of))
         hand = sides[(sides["limb"] == limb) & sides["body_part"].str.endswith("Hand")]
-        times = part_side_times(pd.concat((named, hand.assign(body_part=_PALM))))
+        times = part_side_times(pd.concat((named, hand.assign(body_part=PALM))))
         yield _fingers_report(str(limb), own, times)
+
+
+def _whole_hand(part: str) -> str:
+    """Return the hand of a part of a finger, and any other part unchanged."""
+    finger = finger_of(part)
+    return part if finger is None else f"{part.partition(finger)[0]}Hand"
+
+
+def _tasks_and_sides(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return the valid tasks, marked where fingers were recorded, and contacts with sides."""
+    tested = completed(material)
+    phases, contacts = tested.counting(tested.phases), tested.counting(tested.contacts)
+    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
+    marked = mark_fingers(tasks, tested.quality, contacts)
+    return marked, contacts[contacts["surface_kind"] == "side"]
 
 
 def _fingers_report(limb: str, tasks: pd.DataFrame, times: pd.DataFrame) -> TestReport:
     """Return mean seconds per phase by latency, finger and side, of both hands together."""
     shown = [side for side in _SIDES if side in set(times["side"])]
-    parts = [part for part in (*FINGERS, _PALM) if part in set(times["body_part"])]
+    parts = [part for part in (*FINGERS, PALM) if part in set(times["body_part"])]
     means = mean_times(tasks, times.assign(what=times["body_part"] + "/" + times["side"]))
+    people = tasks.groupby("latency_ms")["participant_code"].nunique()
+    at_latency = {f"{ms:g}": str(n) for ms, n in people.items()}
     rows = []
-    for latency, mean_s in means.iterrows():
+    for latency, mean_s in means.mean_s.iterrows():
         for part in parts:
             own_s = [float(mean_s.get(f"{part}/{side}", 0.0)) for side in shown]
             seconds = (f"{one_s:.2f}" for one_s in (*own_s, sum(own_s)))
-            rows.append((f"{latency:g}", part.lower(), *seconds))
+            rows.append((f"{latency:g}", part.lower(), *seconds, at_latency[f"{latency:g}"]))
     n = int(tasks["participant_code"].nunique())
     return TestReport(
         key=f"contact_fingers_{limb}",
         title=f"{limb.capitalize()}: Which finger touched which side?",
         sentence=(
-            "Mean seconds of contact per phase over participants, of both hands; a phase without a "
-            f"contact counts as 0. {n} participants."
+            "Mean seconds of contact per phase over participants, of both hands. Only phases in "
+            "which fingers were recorded count, those without a contact as 0. "
+            f"{n} participants."
         ),
         apa="",
         columns=(
@@ -109,6 +129,7 @@ def _fingers_report(limb: str, tasks: pd.DataFrame, times: pd.DataFrame) -> Test
             "finger",
             *(f"{side.replace('_', ' ')} (s)" for side in shown),
             "all sides (s)",
+            "n",
         ),
         rows=rows,
         method=(
@@ -141,7 +162,12 @@ def _share_rows(latency: str, cell: pd.DataFrame, times: pd.DataFrame) -> list[t
     ]
 
 
-def _shares_report(limb: str, rows: Sequence[tuple[str, ...]]) -> TestReport:
+def _shares_report(limb: str, rows: Sequence[tuple[str, ...]], *, whole_hands: bool) -> TestReport:
+    hands = (
+        " Fingers were recorded in some phases only, so their contacts count as the hand’s here."
+        if whole_hands
+        else ""
+    )
     return TestReport(
         key=f"contact_shares_{limb}",
         title=f"{limb.capitalize()}: Which part of the body was in contact?",
@@ -154,7 +180,7 @@ def _shares_report(limb: str, rows: Sequence[tuple[str, ...]]) -> TestReport:
         rows=rows,
         method=(
             "The times of body parts are summed and may overlap, so these are not shares of the "
-            "time a side was red. Participants without a contact have no share."
+            f"time a side was red. Participants without a contact have no share.{hands}"
         ),
         source="Karas 2020, chapter 7.",
     )
