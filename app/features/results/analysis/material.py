@@ -8,6 +8,7 @@ page need few of them.
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import pandas as pd
 from sqlalchemy import URL, select
@@ -30,7 +31,7 @@ from app.features.results.analysis.tables import (
 from app.features.results.analysis.tables.context import Contexts, phase_limbs, shared_contexts
 from app.models import InstrumentVersion
 from app.platform.access import hidden_sessions
-from app.protocol import StudyProtocol
+from app.protocol import Condition, StudyProtocol
 from app.science.instruments import Instrument
 
 OWN_BODY = "configuration"
@@ -69,8 +70,9 @@ class Material:
     """The tables of a study's sessions of one kind, with every row, valid or not.
 
     `instruments` by (key, version). `tables` by the names in `READ`. `hidden`: sessions whose
-    condition must stay blinded, whichever version of the study they ran. `worn`: the body of each
-    condition of each version (number, key).
+    condition must stay blinded, whichever version of the study they ran. `conditions`: those of
+    each version (number, key). `protocol`: that of the newest version, which sessions may not have
+    run yet.
 
     Figures and tests compare latencies. If conditions share a latency and differ in their bodies,
     each figure or test covers one body (`of_body`), so that conditions are never mixed.
@@ -81,14 +83,22 @@ class Material:
     tables: Tables
     instruments: Mapping[tuple[str, int], Instrument]
     hidden: frozenset[str] = frozenset()
-    worn: Mapping[tuple[int, str], str] = field(default_factory=dict)
+    conditions: Mapping[tuple[int, str], Condition] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[str, ...]:
-        """Return the bodies to analyse one at a time; none if latencies tell conditions apart."""
-        if self.protocol.has_latencies_apart:
+        """Return the bodies to analyse one at a time; none if latencies tell conditions apart.
+
+        Each session is read by the version that it ran, so the bodies are those of all versions
+        that have sessions; without any session, those of the newest version.
+        """
+        ran = set(self.sessions["study_version"])
+        used = [one for (version, _), one in self.conditions.items() if version in ran]
+        used = used or list(self.protocol.conditions)
+        places = {(one.latency_ms, one.body) for one in used}
+        if len({latency_ms for latency_ms, _ in places}) == len(places):
             return ()
-        return tuple(dict.fromkeys(one.body or OWN_BODY for one in self.protocol.conditions))
+        return tuple(dict.fromkeys(one.body or OWN_BODY for one in used))
 
     @property
     def sessions(self) -> pd.DataFrame:
@@ -169,7 +179,9 @@ class Material:
 
     def of_body(self, body: str) -> "Material":
         """Return the rows of phases in which a body was worn, and those outside the blocks."""
-        conditions = {place for place, worn in self.worn.items() if worn == body}
+        conditions = {
+            place for place, one in self.conditions.items() if (one.body or OWN_BODY) == body
+        }
         tables = Tables(lambda name: _rows_of(self.tables[name], conditions))
         return replace(self, tables=tables)
 
@@ -218,12 +230,12 @@ class _Reader:
         study = study_by_key(self.db, self.study_key)
         protocol = protocol_of(newest_version(self.db, study))
         instruments, hidden = _instruments(self.db), hidden_sessions(self.db, study)
-        worn = {
-            (version.number, one.key): one.body or OWN_BODY
+        conditions = {
+            (version.number, one.key): one
             for version in versions_of(self.db, study)
             for one in protocol_of(version).conditions
         }
-        return Material(protocol, self.kind, Tables(self._read), instruments, hidden, worn)
+        return Material(protocol, self.kind, Tables(self._read), instruments, hidden, conditions)
 
     def _read(self, name: str) -> pd.DataFrame:
         with shared_contexts(self.contexts):
@@ -282,7 +294,8 @@ def _rows_of(rows: pd.DataFrame, conditions: Collection[tuple[int, str]]) -> pd.
     if "condition" not in rows.columns:
         return rows
     places = zip(rows["study_version"], rows["condition"], strict=True)
-    return rows[[key is None or (version, key) in conditions for version, key in places]]
+    chosen = [key is None or (version, key) in conditions for version, key in places]
+    return rows[pd.Series(chosen, rows.index, dtype=bool)]
 
 
 def _rows(rows: pd.DataFrame, ids: set[str], limb: str | None) -> pd.DataFrame:

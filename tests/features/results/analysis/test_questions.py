@@ -5,9 +5,11 @@ from sqlalchemy import select, update
 
 from app.database import Database
 from app.features.design.studies import add_version, study_by_key
-from app.features.results.analysis.material import read_material
+from app.features.movement.avatar import add_shipped_avatar
+from app.features.movement.humanoids import add_shipped_bodies
+from app.features.results.analysis.material import OWN_BODY, read_material
 from app.features.results.analysis.questions import answers_of
-from app.features.results.analysis.questions.answers import DECLARED
+from app.features.results.analysis.questions.answers import BODIES, DECLARED
 from app.features.results.analysis.questions.relations import group_of
 from app.features.results.analysis.questions.words import bounded, p_words
 from app.features.results.analysis.schemas import MeasureView, ResultView, StatisticsResults
@@ -15,8 +17,11 @@ from app.models import Contact, Participant, StudySession
 from app.protocol.plan import Step
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.protocol.helpers import STUDY as FILE
+from tests.protocol.helpers import edited
+from tests.protocol.test_condition_bodies import with_bodies
 from tests.protocol.test_preregistration import SECTION
 
+PHYSICS = "physics\navatar_configuration: {key: standard, version: 2}"
 FALLING = {0.0: 7, 125.0: 5, 350.0: 2}
 """What every participant answers to every item, by latency."""
 
@@ -109,6 +114,34 @@ def test_sessions_without_fingers_enter_no_mean_by_finger(database: Database) ->
         counted, groups = {row[-1] for row in fingers.rows}, {row[1] for row in shares.rows}
     assert stated[0] == stated[1]
     assert (counted, "finger" in groups, "hand" in groups) == ({"1"}, False, True)
+
+
+@pytest.mark.one_engine
+def test_bodies_are_those_of_the_versions_that_ran(database: Database) -> None:
+    """Sessions of an older version whose conditions share a latency are analysed by body."""
+    text = with_bodies("female", "male", physics=False)
+    text = text.replace(*(f"avatar: {one}" for one in ("delayed_copy", PHYSICS)), 1)
+    with database.writing() as db:
+        add_shipped_bodies(db, NOW)
+        add_shipped_avatar(db, NOW)
+        add_version(db, study_by_key(db, STUDY), text, NOW)
+        build_session(db, SessionSpec("P-0000"))
+        build_session(db, SessionSpec("P-0001"))
+        newer = edited(("Acting through another body", "Acting through another one"))
+        add_version(db, study_by_key(db, STUDY), newer, NOW)
+    with database.reading() as db:
+        material = read_material(db, STUDY, "people")
+        found = answers_of(material)
+        ms = {body: material.of_body(body).phases for body in material.bodies}
+    assert material.protocol.has_latencies_apart
+    assert material.bodies == ("female", "male", OWN_BODY)
+    tasks = {body: rows[rows["phase_kind"] == "task"] for body, rows in ms.items()}
+    assert {body: set(rows["condition"]) for body, rows in tasks.items()} == {
+        "female": {"latency_0"},
+        "male": {"latency_125"},
+        OWN_BODY: {"latency_350"},
+    }
+    assert BODIES in found.notes
 
 
 def _shares(found: StatisticsResults) -> list[ResultView]:
