@@ -222,3 +222,91 @@ def test_invalid_files_and_factors_are_refused(tmp_path: Path) -> None:
         path, *_FACTOR, "--within", "remark", "--within", "score"
     )
     assert "all be different" in _COMMAND.refusal(path, *_FACTOR, "--within", "latency")
+
+
+_LONG = ["person,latency,limb,measure,score"] + [
+    f"P{who},{latency},{limb},{measure},{base + who % 3 - latency // 200}"
+    for who in range(6)
+    for latency in (0, 125, 350)
+    for limb in ("hand", "foot", "")
+    for measure, base in (("agency", 5), ("ownership", 3))
+]
+_TWO_FACTORS = (*_FACTOR, "--within", "limb")
+
+
+def test_conditions_choose_one_measure_of_a_long_table(tmp_path: Path) -> None:
+    """Rows of other measures and of phases without a limb are left out, counted, and named."""
+    path = _written(tmp_path, _LONG)
+    figures = _COMMAND.figures(path, *_TWO_FACTORS, "--where", "measure=agency")
+    assert (figures["rows_used"], figures["rows_left_out"]) == (36, 72)
+    assert figures["rows_left_out_because"] == [
+        {"reason": "not measure=agency", "rows": 54},
+        {"reason": "no limb", "rows": 18},
+    ]
+    assert "18 rows have no limb and were left out" in figures["warnings"]
+    hand = _COMMAND.figures(path, *_FACTOR, "--where", "measure=agency", "--where", "limb = hand")
+    assert hand["rows_used"] == 18
+    assert [one["mean"] for one in hand["means"]] == pytest.approx([6.0, 6.0, 5.0])
+
+
+def test_a_condition_that_no_row_fulfils_is_refused(tmp_path: Path) -> None:
+    """A condition without `=`, on an unknown column or without rows says what there is."""
+    path = _written(tmp_path, _LONG)
+    assert "COLUMN=VALUE" in _COMMAND.refusal(path, *_FACTOR, "--where", "agency")
+    assert "no column 'kind'" in _COMMAND.refusal(path, *_FACTOR, "--where", "kind=1")
+    refusal = _COMMAND.refusal(path, *_FACTOR, "--where", "measure=location")
+    assert "there are: agency, ownership" in refusal
+
+
+def test_names_have_a_trend_only_in_a_declared_order(tmp_path: Path) -> None:
+    """Page's test over names runs in the declared order, and not at all without one."""
+    scores = {"low": (4, 5, 4, 6), "middle": (3, 4, 2, 5), "high": (1, 2, 2, 3)}
+    rows = [
+        f"P{who},{load},{value}" for load, all_ in scores.items() for who, value in enumerate(all_)
+    ]
+    path = _written(tmp_path, ["person,load,score", *rows])
+    factor = ("--subject", "person", "--within", "load", "--measure", "score")
+    figures = _COMMAND.figures(path, *factor, "--reference", "low")
+    assert figures["page"] is None
+    assert figures["against_reference"]["first_that_differs"] is None
+    assert any("names without an order" in warning for warning in figures["warnings"])
+    declared = _COMMAND.figures(path, *factor, "--order", "load=low, middle, high")
+    assert declared["design"]["within"][0]["levels"] == ["low", "middle", "high"]
+    # All four order the levels alike but for one tie: L is near its least, 4 x 10.
+    assert declared["page"]["statistic"] == 40.5
+    assert declared["page"]["p_falling"] < 0.01
+    assert "name each of its 3 levels once" in _COMMAND.refusal(
+        path, *factor, "--order", "load=low,high"
+    )
+    assert "one of: load" in _COMMAND.refusal(path, *factor, "--order", "limb=hand,foot")
+
+
+def test_a_test_without_differences_is_named_and_has_no_figures(tmp_path: Path) -> None:
+    """Where two levels never differ, W, p and effect size are absent and the reason is given."""
+    rows = [f"P{who},{at},{who + (at > 200)}" for who in range(5) for at in (0, 125, 350)]
+    path = _written(tmp_path, ["person,latency,score", *rows])
+    figures = _COMMAND.figures(path, *_FACTOR, "--reference", "0")
+    equal, different = figures["pairwise"][0], figures["pairwise"][1]
+    assert (equal["degenerate"], equal["p"], equal["w"]) == (
+        "all 5 differences are zero",
+        None,
+        None,
+    )
+    assert (different["degenerate"], different["p"]) == (None, 0.0625)
+    assert any("0 - 125: all 5 differences are zero" in one for one in figures["warnings"])
+    text = _COMMAND.run(path, *_FACTOR, "--reference", "0").stdout
+    assert "125 all 5 differences are zero" in text
+
+
+def test_another_v_of_r_is_noted(tmp_path: Path) -> None:
+    """Where R ranks equal differences apart, because 0.3 - 0.2 is not 0.2 - 0.1, its V is noted."""
+    pairs = [(0.3, 0.2), (0.1, 0.2), (0.5, 0.1), (0.7, 0.2)]
+    rows = [
+        f"P{who},{at},{value}"
+        for who, pair in enumerate(pairs)
+        for at, value in zip((0, 125), pair, strict=True)
+    ]
+    figures = _COMMAND.figures(_written(tmp_path, ["person,latency,score", *rows]), *_FACTOR)
+    # 0.3 - 0.2 = 0.09999999999999998 has rank 1 in R, and 0.1 - 0.2 rank 2: V = 1 + 3 + 4.
+    assert figures["pairwise"][0]["w"] == 1.5
+    assert any("R's wilcox.test gives V = 8 instead of 8.5" in one for one in figures["warnings"])

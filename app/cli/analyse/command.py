@@ -20,6 +20,16 @@ def analyse(
         str | None,
         typer.Option(help="Level of the first factor that every other is compared with."),
     ] = None,
+    where: Annotated[
+        list[str] | None,
+        typer.Option(help="COLUMN=VALUE: only rows with this value; repeatable."),
+    ] = None,
+    order: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="FACTOR=LEVEL,LEVEL,...: the order of its levels; a trend in names needs one."
+        ),
+    ] = None,
     art: Annotated[
         bool, typer.Option("--art", help="Also the aligned rank transform, which is contested.")
     ] = False,
@@ -31,7 +41,17 @@ def analyse(
     from app.cli.analyse.output_json import as_json as to_json
     from app.cli.analyse.run import AnalyseOrder, carry_out
 
-    order = AnalyseOrder(table, subject, within, measure, reference, seed, art)
+    asked = AnalyseOrder(
+        table,
+        subject,
+        within,
+        measure,
+        reference,
+        seed,
+        art,
+        where=tuple(where or ()),
+        declared_orders=tuple(order or ()),
+    )
     with reported(ValueError, OSError):
-        done = carry_out(order)
+        done = carry_out(asked)
     print(json.dumps(to_json(done), allow_nan=False) if as_json else texts.as_text(done))

@@ -3,6 +3,7 @@
 There is one family per factor, and one per level of the second factor.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
@@ -58,13 +59,15 @@ class Family:
     """A family of tests; Holm's correction is over its pairs.
 
     Attributes:
-        page: Page's trend test, for three levels or more.
+        ordered: whether the levels have an order: they are numbers, or it was declared.
+        page: Page's trend test, for three levels or more that have an order.
         intervals: of each pair's mean difference, in the order of `pairs`.
         planned: each level against the reference, if one was named; Holm-corrected separately.
         further: by key, the outcomes of the registry's other tests.
     """
 
     question: Question
+    ordered: bool
     friedman: Friedman | None
     page: PageTrend | None
     pairs: tuple[Comparison, ...]
@@ -74,10 +77,15 @@ class Family:
 
 
 def families_of(
-    cells: Cells, reference: str | None, rng: np.random.Generator, warnings: list[str]
+    cells: Cells,
+    reference: str | None,
+    ordered: frozenset[str],
+    rng: np.random.Generator,
+    warnings: list[str],
 ) -> list[Family]:
     """Test each factor averaged over the other, then the first at each level of the second.
 
+    `ordered` names the factors whose levels have an order; only along these can there be a trend.
     The reference must be a level of the first factor; otherwise StatisticsError is raised.
     """
     names = cells.factors
@@ -88,12 +96,20 @@ def families_of(
         over = tuple(name for name in names if name != factor)
         question = Question(factor, levels, averaged_over=over)
         against = reference if axis == 1 else None
-        found.append(_family_of(question, cells.of_factor(axis), against, rng, warnings))
+        has_trend = factor in ordered
+        if not has_trend and len(levels) > _TWO:
+            warnings.append(
+                f"{factor}: no trend test, because the levels are names without an order; declare"
+                f" one with --order '{factor}={','.join(levels)}'"
+            )
+        values = cells.of_factor(axis)
+        found.append(_family_of(question, values, against, rng, warnings, ordered=has_trend))
     if len(names) == _MOST_FACTORS:
         for place, level in enumerate(cells.levels[1]):
             question = Question(names[0], cells.levels[0], at={names[1]: level})
             values = cells.values[:, :, place]
-            found.append(_family_of(question, values, reference, rng, warnings))
+            has_trend = names[0] in ordered
+            found.append(_family_of(question, values, reference, rng, warnings, ordered=has_trend))
     return found
 
 
@@ -103,6 +119,8 @@ def _family_of(
     reference: str | None,
     rng: np.random.Generator,
     warnings: list[str],
+    *,
+    ordered: bool,
 ) -> Family:
     """Compute one family of tests.
 
@@ -117,11 +135,15 @@ def _family_of(
     if ranked is not None and ranked.note:
         warnings.append(f"{where}p of Friedman's test is {ranked.note}")
     pairs = tried(lambda: pairwise(values, levels), warnings, where) or ()
+    warnings += [f"{where}{note}" for pair in pairs for note in _notes(pair)]
+    # Without differences within any subject there is nothing to rank, which Friedman's test said.
+    has_trend = ordered and len(levels) > _TWO and ranked is not None
     columns = combinations(values.T, 2)
     return Family(
         question=question,
+        ordered=ordered,
         friedman=ranked,
-        page=tried(lambda: page_trend(whole), warnings, where) if len(levels) > _TWO else None,
+        page=tried(lambda: page_trend(whole), warnings, where) if has_trend else None,
         pairs=pairs,
         intervals=tuple(mean_interval(complete_rows(a - b)[0], rng) for a, b in columns)
         if pairs
@@ -131,6 +153,21 @@ def _family_of(
         else None,
         further=_further(whole, levels, warnings, where),
     )
+
+
+def _notes(pair: Comparison) -> list[str]:
+    """Name a test that says nothing, and a W that other programs report differently."""
+    test, name = pair.test, f"{pair.a} - {pair.b}"
+    if test.degenerate:
+        return [f"{name}: {test.degenerate}, so there is nothing to test"]
+    if not math.isclose(test.w_plus_unrounded, test.w_plus):
+        other = (
+            f"{name}: R's wilcox.test gives V = {test.w_plus_unrounded:g} instead of"
+            f" {test.w_plus:g}, because it does not see that some differences are equal"
+            " (digits.rank = 7 makes it)"
+        )
+        return [other]
+    return []
 
 
 def _further(

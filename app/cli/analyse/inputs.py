@@ -1,5 +1,9 @@
 """Read a CSV file as rows of a tidy table, each with its line number.
 
+Only rows that fulfil every condition (`--where`) are read, and rows without a level of a factor are
+left out: in an export, phases without a limb have no hand or foot. How many rows were left out, and
+why, is part of the result.
+
 Separators are commas, semicolons or tabs, detected in the header; with semicolons, numbers may have
 a decimal comma. Invalid input is rejected with its line and column.
 """
@@ -8,15 +12,19 @@ import csv
 import io
 import re
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import mode
 
-from app.science.statistics import UnusableTable
+from app.science.statistics import MISSING, UnusableTable, as_number, ordered_levels
 
 _SEPARATORS = (",", ";", "\t")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+")
 _SHOWN = 60
+_VALUES_SHOWN = 12
+NO_LEVEL = MISSING - {"none"}
+"""Texts in a factor's column that mean that the row has no level of it."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +36,7 @@ class TidyInput:
         within: each factor's column, in the requested order.
         lines: line numbers in the file, from 1; the header is line 1.
         replicates: how many rows duplicate an earlier one, in tables with several rows per cell.
+        left_out: how many rows were left out, by reason.
     """
 
     subjects: list[str]
@@ -35,6 +44,7 @@ class TidyInput:
     measure: list[str]
     lines: list[int]
     replicates: int
+    left_out: dict[str, int]
 
 
 @dataclass(frozen=True)
@@ -43,11 +53,13 @@ class _Row:
     cells: list[str]
 
 
-def read_tidy(path: Path, subject: str, within: list[str], measure: str) -> TidyInput:
-    """Read the named columns.
+def read_tidy(
+    path: Path, subject: str, within: list[str], measure: str, where: Sequence[str] = ()
+) -> TidyInput:
+    """Read the named columns of the rows that fulfil every condition `COLUMN=VALUE`.
 
     Raises OSError if the file cannot be read, UnusableTable if it is not a table, lacks a column,
-    or has a duplicate row although all other cells have one row.
+    has a duplicate row although all other cells have one row, or no row fulfils a condition.
     """
     separator, header, rows = _table(path)
     requested = [subject, *within, measure]
@@ -61,6 +73,17 @@ def read_tidy(path: Path, subject: str, within: list[str], measure: str) -> Tidy
                 f"Line {row.line} has {len(row.cells)} cells, but the header has {len(header)}."
                 " Give every row one cell for each column, and put text with separators in quotes."
             )
+    left_out = {}
+    for condition in where:
+        kept = _fulfilling(condition, header, rows)
+        left_out[condition] = len(rows) - len(kept)
+        rows = kept
+    for name in within:
+        kept = [row for row in rows if row.cells[header.index(name)].casefold() not in NO_LEVEL]
+        left_out[f"no {name}"] = len(rows) - len(kept)
+        if rows and not kept:
+            raise UnusableTable(f"Column {name!r} is empty in every row that was asked for.")
+        rows = kept
     columns = {
         name: [_pointed(row.cells[header.index(name)], separator) for row in rows]
         for name in requested
@@ -72,7 +95,29 @@ def read_tidy(path: Path, subject: str, within: list[str], measure: str) -> Tidy
         measure=columns[measure],
         lines=[row.line for row in rows],
         replicates=_repeated(rows, keys),
+        left_out={reason: count for reason, count in left_out.items() if count},
     )
+
+
+def _fulfilling(condition: str, header: list[str], rows: list[_Row]) -> list[_Row]:
+    """Return the rows in which a column has a value; numbers are compared as numbers."""
+    name, equals, wanted = (part.strip() for part in condition.partition("="))
+    if not equals or not name:
+        raise UnusableTable(f"{condition!r} is not a condition; write COLUMN=VALUE.")
+    _check_column(name, header)
+    place = header.index(name)
+    number = as_number(wanted)
+    kept = [
+        row
+        for row in rows
+        if row.cells[place] == wanted
+        or (number is not None and as_number(row.cells[place]) == number)
+    ]
+    if not kept:
+        found = ordered_levels(row.cells[place] for row in rows)
+        shown = ", ".join(found[:_VALUES_SHOWN]) + (", ..." if len(found) > _VALUES_SHOWN else "")
+        raise UnusableTable(f"No row has {wanted!r} in column {name!r}; there are: {shown}.")
+    return kept
 
 
 def _table(path: Path) -> tuple[str, list[str], list[_Row]]:

@@ -6,7 +6,13 @@ from collections.abc import Iterator
 from app.cli.analyse.families import Family
 from app.cli.analyse.run import Analysis
 from app.science.statistical_tests import statistical_test
-from app.science.statistics import AgainstReference, AlignedRanks, Interval, RmAnova
+from app.science.statistics import (
+    AgainstReference,
+    AlignedRanks,
+    Comparison,
+    Interval,
+    RmAnova,
+)
 
 _NONE = "-"
 _LEAST_P = 0.0001
@@ -27,7 +33,11 @@ def as_text(done: Analysis) -> str:
         for name, levels in zip(cells.factors, cells.levels, strict=True)
     )
     complete = f"{len(done.complete.subjects)} of {len(cells.subjects)} subjects complete"
-    lines = [f"{order.measure} by {factors}: {complete}.", "", *_means(done)]
+    rows = f"{done.rows_used} rows used" + "".join(
+        f", {count} left out ({reason if reason not in order.where else 'not ' + reason})"
+        for reason, count in done.rows_left_out.items()
+    )
+    lines = [f"{order.measure} by {factors}: {complete}.", f"{rows}.", "", *_means(done)]
     for family in done.families:
         lines += ["", *_family(family)]
     if done.rm_anova is not None:
@@ -80,7 +90,7 @@ def _family(family: Family) -> Iterator[str]:
     if family.pairs:
         yield from _pairs(family)
     if family.planned is not None:
-        yield from _planned(family.planned)
+        yield from _planned(family.planned, ordered=family.ordered)
 
 
 def _pairs(family: Family) -> Iterator[str]:
@@ -92,21 +102,33 @@ def _pairs(family: Family) -> Iterator[str]:
     for one, interval in zip(family.pairs, family.intervals, strict=True):
         mean = _NONE if interval is None else _figure(interval.estimate)
         yield (
-            f"  {f'{one.a} - {one.b}':<{width}}{one.test.n:>4}{one.test.w:>8g}"
-            f"{_bare(one.test.p):>9}{_bare(one.p_holm):>9}{one.test.rank_biserial:>8.3f}"
+            f"  {f'{one.a} - {one.b}':<{width}}{one.test.n:>4}{_tested(one)}"
             f"{mean:>12}{_ends(interval):>24}"
         )
 
 
-def _planned(found: AgainstReference) -> Iterator[str]:
-    listed = ", ".join(f"{one.a} {_p(one.p_holm)}" for one in found.comparisons)
-    first = found.first_that_differs
-    yield f"  Against {found.reference}, Holm over these: {listed}"
-    yield (
-        f"  First level that differs from {found.reference}: {first}"
-        if first
-        else f"  No level differs from {found.reference} at {found.alpha:g}"
+def _tested(one: Comparison) -> str:
+    """Format W, p, adjusted p and effect size; dashes for a test that says nothing."""
+    if one.test.degenerate:
+        return f"{_NONE:>8}{_NONE:>9}{_NONE:>9}{_NONE:>8}"
+    return (
+        f"{one.test.w:>8g}{_bare(one.test.p):>9}{_bare(one.p_holm):>9}"
+        f"{one.test.rank_biserial:>8.3f}"
     )
+
+
+def _planned(found: AgainstReference, *, ordered: bool) -> Iterator[str]:
+    listed = ", ".join(
+        f"{one.a} {one.test.degenerate or _p(one.p_holm)}" for one in found.comparisons
+    )
+    differ = [one.a for one in found.comparisons if one.p_holm <= found.alpha]
+    yield f"  Against {found.reference}, Holm over these: {listed}"
+    if not differ:
+        yield f"  No level differs from {found.reference} at {found.alpha:g}"
+    elif ordered:
+        yield f"  First level that differs from {found.reference}: {differ[0]}"
+    else:
+        yield f"  Levels that differ from {found.reference}: {', '.join(differ)}"
 
 
 def _anova(found: RmAnova) -> Iterator[str]:

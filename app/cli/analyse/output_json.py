@@ -25,6 +25,12 @@ def as_json(done: Analysis) -> dict[str, Any]:
     art = done.aligned
     result: dict[str, Any] = {
         "n": len(done.complete.subjects),
+        "rows_used": done.rows_used,
+        "rows_left_out": sum(done.rows_left_out.values()),
+        "rows_left_out_because": [
+            {"reason": f"not {reason}" if reason in done.order.where else reason, "rows": count}
+            for reason, count in done.rows_left_out.items()
+        ],
         "design": _design(done),
         "means": [_mean(one) for one in done.means],
         "friedman": first["friedman"],
@@ -85,7 +91,7 @@ def _family_json(family: Family) -> dict[str, Any]:
             for one, interval in zip(family.pairs, family.intervals, strict=True)
         ],
         "page": _page(family.page),
-        "against_reference": _planned(family.planned),
+        "against_reference": _planned(family.planned, ordered=family.ordered),
         **{
             key: {"n": outcome.n, "p": outcome.p, "words": outcome.sentence}
             for key, outcome in family.further.items()
@@ -110,21 +116,25 @@ def _pair(one: Comparison, interval: Interval | None) -> dict[str, Any]:
 
 def _tested(one: Comparison) -> dict[str, Any]:
     sizes = ("n", "n_zero", "n_left_out", "zeros")
-    return {
+    found = {
         **_values(one, "a", "b"),
         **_values(one.test, "w", "p"),
         **_values(one, "p_holm"),
         **_values(one.test, "rank_biserial", "p_asymptotic", "method", *sizes),
         **_values(one, "median_difference"),
+        "degenerate": one.test.degenerate or None,
     }
+    if one.test.degenerate:
+        found |= dict.fromkeys(("w", "p", "p_holm", "p_asymptotic", "rank_biserial"))
+    return found
 
 
-def _planned(planned: AgainstReference | None) -> dict[str, Any] | None:
+def _planned(planned: AgainstReference | None, *, ordered: bool) -> dict[str, Any] | None:
     if planned is None:
         return None
     return {
         "reference": planned.reference,
-        "first_that_differs": planned.first_that_differs,
+        "first_that_differs": planned.first_that_differs if ordered else None,
         "alpha": planned.alpha,
         "comparisons": [_tested(one) for one in planned.comparisons],
     }

@@ -19,6 +19,7 @@ from app.science.statistics import (
     aligned_ranks_within,
     cells_of,
     complete_rows,
+    has_order,
     rm_anova,
 )
 
@@ -37,6 +38,10 @@ class AnalyseOrder:
     reference: str | None
     seed: int
     art: bool
+    where: tuple[str, ...] = ()
+    """Conditions COLUMN=VALUE that a row must fulfil."""
+    declared_orders: tuple[str, ...] = ()
+    """FACTOR=LEVEL,LEVEL,...: the declared order of a factor's levels."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +67,9 @@ class Analysis:
     families: tuple[Family, ...]
     rm_anova: RmAnova | None
     aligned: AlignedRanks | None
+    rows_used: int
+    rows_left_out: dict[str, int]
+    """How many rows of the file were left out, by reason."""
     warnings: list[str] = field(default_factory=list)
 
 
@@ -75,7 +83,8 @@ def carry_out(order: AnalyseOrder) -> Analysis:
         raise StatisticsError(
             f"{len(order.within)} within-subject factors were named; one or two can be analysed."
         )
-    read = read_tidy(order.table, order.subject, order.within, order.measure)
+    orders = _orders(order)
+    read = read_tidy(order.table, order.subject, order.within, order.measure, order.where)
     cells = cells_of(
         read.subjects,
         read.within,
@@ -83,23 +92,51 @@ def carry_out(order: AnalyseOrder) -> Analysis:
         measure_name=order.measure,
         subject_name=order.subject,
         lines=read.lines,
+        orders=orders,
     )
     complete = cells.complete()
     _check_usable(order, cells, complete)
+    left_out = read.left_out | ({f"no {order.measure}": cells.n_empty} if cells.n_empty else {})
     warnings = _warnings(cells, complete, read.replicates)
+    warnings += [
+        f"{count} rows have {reason} and were left out"
+        for reason, count in read.left_out.items()
+        if reason not in order.where
+    ]
+    ordered = frozenset(
+        factor
+        for factor, levels in zip(cells.factors, cells.levels, strict=True)
+        if factor in orders or has_order(levels)
+    )
     rng = np.random.default_rng(order.seed)
     return Analysis(
         order=order,
         cells=cells,
         complete=complete,
         means=tuple(_means(cells, rng)),
-        families=tuple(families_of(cells, order.reference, rng, warnings)),
+        families=tuple(families_of(cells, order.reference, ordered, rng, warnings)),
         rm_anova=tried(lambda: rm_anova(complete.values, cells.factors), warnings),
         aligned=tried(lambda: aligned_ranks_within(complete.values, cells.factors), warnings)
         if order.art
         else None,
+        rows_used=int(cells.rows.sum()),
+        rows_left_out=left_out,
         warnings=warnings,
     )
+
+
+def _orders(order: AnalyseOrder) -> dict[str, list[str]]:
+    """Return the declared orders by factor."""
+    found: dict[str, list[str]] = {}
+    for text in order.declared_orders:
+        factor, equals, listed = (part.strip() for part in text.partition("="))
+        if not equals or factor not in order.within:
+            raise StatisticsError(
+                f"{text!r} is not an order of a factor; write FACTOR=LEVEL,LEVEL,... for one of:"
+                f" {', '.join(order.within)}."
+            )
+        found[factor] = [level.strip() for level in listed.split(",")]
+    return found
 
 
 def missing_cells(cells: Cells, subject: str) -> str:

@@ -97,14 +97,21 @@ def reference_outcome(sample: Sample) -> Outcome:
                 f"{pair.a} – {pair.b}",
                 str(pair.test.n),
                 two_decimals(pair.median_difference),
-                two_decimals(pair.test.rank_biserial),
-                f"{pair.test.p:.3f}",
-                f"{p:.3f}",
+                *(
+                    ("–", "–", "–")
+                    if pair.test.degenerate
+                    else (two_decimals(pair.test.rank_biserial), f"{pair.test.p:.3f}", f"{p:.3f}")
+                ),
             )
             for pair, p in zip(found.comparisons, p_values, strict=True)
         ],
         method="Exact Wilcoxon signed-rank tests"
-        + (", p adjusted by Holm's rule." if sample.holm else ", p not adjusted."),
+        + (", p adjusted by Holm's rule." if sample.holm else ", p not adjusted.")
+        + "".join(
+            f" {pair.a} – {pair.b} was not tested: {pair.test.degenerate}."
+            for pair in found.comparisons
+            if pair.test.degenerate
+        ),
     )
 
 

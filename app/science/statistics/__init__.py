@@ -36,7 +36,7 @@ from app.science.statistics.error_rates import (
 from app.science.statistics.errors import ConstantData, StatisticsError, TooFewData, UnusableTable
 from app.science.statistics.exploring import explore
 from app.science.statistics.friedman import Friedman, friedman
-from app.science.statistics.levels import place_of
+from app.science.statistics.levels import as_number, has_order, ordered_levels, place_of
 from app.science.statistics.mean_intervals import mean_interval, within_subject_intervals
 from app.science.statistics.page import PageTrend, page_trend
 from app.science.statistics.pairwise import Comparison, holm, pairwise
@@ -54,11 +54,12 @@ from app.science.statistics.shares import contact_shares, share_of_maximum
 from app.science.statistics.signed_rank import signed_rank
 from app.science.statistics.spearman import Spearman, spearman
 from app.science.statistics.split_plot import split_plot_anova
-from app.science.statistics.tidy import Cells, Complete, cells_of
+from app.science.statistics.tidy import MISSING, Cells, Complete, cells_of
 
 __all__ = [
     "LEAST_COVERAGE",
     "LEVEL",
+    "MISSING",
     "MOST_REJECTIONS",
     "AgainstReference",
     "AlignedRanks",
@@ -87,6 +88,7 @@ __all__ = [
     "aligned_contrasts",
     "aligned_ranks_split_plot",
     "aligned_ranks_within",
+    "as_number",
     "bootstrap_interval",
     "cells_of",
     "complete_rows",
@@ -96,11 +98,13 @@ __all__ = [
     "error_rates_from_json",
     "explore",
     "friedman",
+    "has_order",
     "holm",
     "mcdonald_omega",
     "mean_interval",
     "mean_of",
     "median_of",
+    "ordered_levels",
     "page_trend",
     "pairwise",
     "place_of",

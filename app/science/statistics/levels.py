@@ -1,7 +1,9 @@
-"""The order of a factor's levels: numeric if all are numbers, otherwise natural sort order.
+"""The order of a factor's levels: as declared, numeric if all are numbers, else natural sort order.
 
 Trends and "the first level that differs" depend on the order, and it must not depend on the order
-of rows in a file. "0", "125" and "350" are ordered as numbers; "2 ms" comes before "10 ms".
+of rows in a file. "0", "125" and "350" are ordered as numbers; "2 ms" comes before "10 ms". Names
+have no order of their own: sorting them only makes tables readable, and a trend over them means
+nothing unless their order was declared (`has_order`).
 """
 
 import math
@@ -29,6 +31,27 @@ def ordered_levels(found: Iterable[str]) -> tuple[str, ...]:
                 spelled[number] = min(shortest, level, key=lambda text: (len(text), text))
         return tuple(spelled[number] for number in sorted(spelled))
     return tuple(sorted(different, key=_natural))
+
+
+def has_order(levels: Sequence[str]) -> bool:
+    """Return whether the levels have an order of their own, because all are numbers."""
+    return not any(as_number(level) is None for level in levels)
+
+
+def declared_levels(factor: str, found: Iterable[str], declared: Sequence[str]) -> tuple[str, ...]:
+    """Return the levels of a factor in their declared order.
+
+    Raises StatisticsError if it does not name every level exactly once.
+    """
+    levels = ordered_levels(found)
+    if len(declared) == len(levels):
+        places = {place_of(levels, level) for level in declared}
+        if len(places) == len(levels):
+            return tuple(levels[place_of(levels, level)] for level in declared)
+    raise StatisticsError(
+        f"The order of {factor!r} names {', '.join(declared)}; name each of its"
+        f" {len(levels)} levels once: {', '.join(levels)}."
+    )
 
 
 def level_places(levels: Sequence[str]) -> dict[object, int]:

@@ -13,6 +13,10 @@ has the distribution of a sum of independent terms, 0 or rank, computed by convo
 is twice the smaller tail, at most 1. The asymptotic p is normal with the variance sum(ranks^2) / 4,
 which holds with ties, without continuity correction.
 
+Differences that are equal to 11 digits count as equal: 0.3 - 0.2 and 0.2 - 0.1 share a rank. R's
+`wilcox.test` ranks the numbers as the computer holds them (unless `digits.rank` is given), and can
+then report another V; `w_plus_unrounded` is that V.
+
 The matched rank-biserial correlation, (W+ - W-) / (W+ + W-), from -1 to 1, is the effect size: the
 share of the rank sum in favour of x minus the share against (Kerby 2014, Comprehensive Psychology
 3, 11.IT.3.1).
@@ -54,6 +58,7 @@ class SignedRank:
         n: pairs with both values.
         n_zero: pairs among these whose values are equal.
         n_left_out: pairs with a missing value (pairwise).
+        w_plus_unrounded: W+ if differences were ranked without rounding; the V of R.
     """
 
     w: float
@@ -68,6 +73,12 @@ class SignedRank:
     n: int
     n_zero: int
     n_left_out: int
+    w_plus_unrounded: float
+
+    @property
+    def degenerate(self) -> str:
+        """Why the test says nothing about these pairs; empty if it can be used."""
+        return f"all {self.n} differences are zero" if self.n_zero == self.n else ""
 
 
 def signed_rank(
@@ -112,7 +123,16 @@ def signed_rank(
         n=first.size,
         n_zero=first.size - ranks.size,
         n_left_out=left_out,
+        w_plus_unrounded=_unrounded(first - second, zeros),
     )
+
+
+def _unrounded(differences: FloatArray, zeros: ZeroRule) -> float:
+    """Return W+ of the differences as they are, down to the last binary digit."""
+    sizes = np.abs(differences)
+    moved = sizes > 0.0
+    ranks = midranks(sizes)[moved] if zeros == "pratt" else midranks(sizes[moved])
+    return float(ranks[differences[moved] > 0.0].sum())
 
 
 def _check_words(alternative: str, zeros: str) -> None:

@@ -24,7 +24,12 @@ import numpy as np
 
 from app.science.statistics.arrays import FloatArray, IntArray
 from app.science.statistics.errors import StatisticsError, TooFewData, UnusableTable
-from app.science.statistics.levels import as_number, level_places, ordered_levels
+from app.science.statistics.levels import (
+    as_number,
+    declared_levels,
+    level_places,
+    ordered_levels,
+)
 
 MISSING = frozenset({"", "na", "n/a", "nan", "null", "none", "."})
 """Texts that mean a missing value, in upper or lower case."""
@@ -99,6 +104,7 @@ def cells_of(
     measure_name: str = "measure",
     subject_name: str = "subject",
     lines: Sequence[int] | None = None,
+    orders: Mapping[str, Sequence[str]] | None = None,
 ) -> Cells:
     """Sort the rows of a tidy table into cells.
 
@@ -108,12 +114,14 @@ def cells_of(
         measure: one value per row, as number or text; NaN or one of MISSING where missing.
         measure_name, subject_name: names of the two columns, for messages.
         lines: the line of each row in its file, for messages; by default rows count from 1.
+        orders: the declared order of a factor's levels; without one see `levels.py`.
 
     Raises:
         UnusableTable: a subject or level is empty, or a value is not a finite number; names line,
             column and value.
         TooFewData: no row, fewer than two subjects, or a factor with one level.
-        StatisticsError: columns of different length, no factor.
+        StatisticsError: columns of different length, no factor, an order that does not list the
+            levels of its factor.
     """
     _check_lengths(subjects, within, measure)
     where = list(lines) if lines is not None else list(range(1, len(subjects) + 1))
@@ -125,7 +133,13 @@ def cells_of(
     values = [
         _number(value, measure_name, line) for value, line in zip(measure, where, strict=True)
     ]
-    levels = tuple(ordered_levels(column) for column in level_columns.values())
+    declared = {} if orders is None else orders
+    levels = tuple(
+        declared_levels(factor, column, declared[factor])
+        if factor in declared
+        else ordered_levels(column)
+        for factor, column in level_columns.items()
+    )
     who = tuple(dict.fromkeys(names))
     _check_numbers(who, tuple(within), levels)
     sums, rows = _sums_by_cell(who, names, levels, list(level_columns.values()), values)

@@ -13,6 +13,7 @@ import numpy as np
 
 from app.features.results.analysis.questions.measures import Measure
 from app.features.results.analysis.questions.words import (
+    NONE,
     Brief,
     TestReport,
     against,
@@ -71,10 +72,24 @@ class LimbData:
 
 def apa_of(one: Comparison) -> str:
     """Return a comparison as one line for a paper."""
+    if one.test.degenerate:
+        return f"{one.a} vs. {one.b} ms: not tested, {one.test.degenerate}"
     return (
         f"{one.a} vs. {one.b} ms: W = {number(one.test.w, 1)}, n = {one.test.n}, "
         f"{p_words(one.test.p)}, Holm-adjusted {p_words(one.p_holm)}, rank-biserial r = "
         f"{bounded(one.test.rank_biserial, 2)}"
+    )
+
+
+def signed_cells(one: Comparison) -> tuple[str, str, str, str]:
+    """Return W, p, adjusted p and effect size; dashes where there is nothing to test."""
+    if one.test.degenerate:
+        return NONE, NONE, NONE, NONE
+    return (
+        number(one.test.w, 1),
+        p_cell(one.test.p),
+        p_cell(one.p_holm),
+        bounded(one.test.rank_biserial, 2),
     )
 
 
@@ -175,10 +190,7 @@ def _predicted_trend(data: LimbData, found: DirectionalHypothesis) -> TestReport
             (
                 one.a,
                 str(one.test.n),
-                number(one.test.w, 1),
-                p_cell(one.test.p),
-                p_cell(one.p_holm),
-                bounded(one.test.rank_biserial, 2),
+                *signed_cells(one),
             )
             for one in found.against_first.comparisons
         ],
@@ -321,8 +333,5 @@ def _row(data: LimbData, one: Comparison) -> tuple[str, ...]:
         str(one.test.n),
         number(one.median_difference),
         mean_words(differences),
-        number(one.test.w, 1),
-        p_cell(one.test.p),
-        p_cell(one.p_holm),
-        bounded(one.test.rank_biserial, 2),
+        *signed_cells(one),
     )
