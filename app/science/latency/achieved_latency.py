@@ -18,13 +18,19 @@ What the number means:
   filter adds the filter's group delay at the frequencies of human movement, below about 5 Hz.
 - It is the delay between the two streams. Delays of tracking, rendering and display are not
   included.
+- It is one number for the whole phase. A delay that changes on the way is noticed: up to four
+  pieces of the phase, with at least five seconds of movement each, are measured on their own. Where
+  two of them differ by more than two tolerances and their intervals do not overlap, `changed` is
+  true, the latency is only an average over the phase, and `reason` lists the pieces. A change that
+  is over within a piece shows only in the width of the interval.
 - A movement that repeats itself fits at several lags. Where the data cannot decide between them,
   the smallest lag that is not negative is returned, and `reason` lists the others.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import permutations
 
 import numpy as np
 
@@ -44,6 +50,7 @@ TOLERANCE_S = 0.010
 _LEAST_CORRELATION = 0.6
 _WIDEST_HALF_S = 0.1
 _BANDWIDTH_S = 0.02
+_MOST_PIECES = 4
 
 
 class AchievedLatencyError(ValueError):
@@ -82,6 +89,9 @@ class AchievedLatency:
         frame_s: median interval between frames of the actual body.
         correlation: the correlation of all angular velocities at the best lag, -1 to 1.
         reason: the reason why there is no latency, or a reservation about it; else None.
+        pieces_s: the latency of each piece of the phase, in order; None where one is unknown. Empty
+            if there is too little movement for two pieces.
+        changed: whether the pieces differ: the delay was not the same throughout.
     """
 
     latency_s: float | None
@@ -92,6 +102,8 @@ class AchievedLatency:
     frame_s: float | None
     correlation: float | None = None
     reason: str | None = None
+    pieces_s: tuple[float | None, ...] = ()
+    changed: bool = False
 
 
 def achieved_latency(
@@ -136,6 +148,18 @@ def latency_of_runs(
             " give two ascending finite numbers."
         )
     tracks = [_tracks(run) for run in runs]
+    whole = _measured(tracks, lowest_s, highest_s)
+    count = min(_MOST_PIECES, int(whole.movement_s // LEAST_MOVEMENT_S))
+    if count < 2:
+        return whole
+    pieces = [_measured(piece, lowest_s, highest_s) for piece in _pieces(tracks, count)]
+    return _compared(whole, pieces)
+
+
+def _measured(
+    tracks: Sequence[tuple[Track, Track]], lowest_s: float, highest_s: float
+) -> AchievedLatency:
+    """Measure the latency of (target, actual) tracks as one, whether or not it changes."""
     parts = list(stretches(tracks))
     samples = sum(int((actual.active & actual.valid.any(axis=1)).sum()) for _, actual in tracks)
     unknown = AchievedLatency(None, None, None, 0.0, samples, _frame_s(tracks))
@@ -148,16 +172,53 @@ def latency_of_runs(
     return _refine(parts, coarse, unknown)
 
 
+def _pieces(
+    tracks: Sequence[tuple[Track, Track]], count: int
+) -> Iterator[list[tuple[Track, Track]]]:
+    """Divide tracks into pieces with equal numbers of active frames, in order."""
+    ends = np.cumsum([int(actual.active.sum()) for _, actual in tracks])
+    for piece in range(count):
+        low, high = piece * ends[-1] // count, (piece + 1) * ends[-1] // count
+        found = []
+        for (target, actual), end in zip(tracks, ends, strict=True):
+            number = end - actual.active.sum() + np.cumsum(actual.active) - 1
+            within: BoolArray = actual.active & (number >= low) & (number < high)
+            found.append((target, replace(actual, active=within)))
+        yield found
+
+
+def _compared(whole: AchievedLatency, pieces: Sequence[AchievedLatency]) -> AchievedLatency:
+    """Add the pieces to the latency of the whole phase, and say so if they differ."""
+    pieces_s = tuple(piece.latency_s for piece in pieces)
+    # A piece whose movement repeats itself may be a whole repetition off.
+    known = [piece for piece in pieces if piece.latency_s is not None and piece.reason is None]
+    least_s = 2.0 * tolerance_s(whole)
+    changed = any(
+        (later.low_s or 0.0) > (earlier.high_s or 0.0)
+        and (later.latency_s or 0.0) - (earlier.latency_s or 0.0) > least_s
+        for earlier, later in permutations(known, 2)
+    )
+    if not changed:
+        return replace(whole, pieces_s=pieces_s)
+    listed = ", ".join("unknown" if one is None else f"{_ms(one)} ms" for one in pieces_s)
+    reason = f"The delay changed during the phase; its pieces, in order: {listed}."
+    if whole.latency_s is None and whole.reason is not None:
+        reason = f"{whole.reason} {reason}"
+    return replace(whole, reason=reason, pieces_s=pieces_s, changed=True)
+
+
 def tolerance_s(achieved: AchievedLatency) -> float:
     """Return the accepted deviation of the latency: 10 ms, or one frame where that is longer."""
     return max(TOLERANCE_S, achieved.frame_s or 0.0)
 
 
 def is_off(achieved: AchievedLatency, ordered_s: float) -> bool:
-    """Return whether the latency differs from the set one by more than the tolerance.
+    """Return whether the latency differs from the set one by more than the tolerance, or changed.
 
-    False where the latency is unknown.
+    False where the latency is unknown and is not known to have changed.
     """
+    if achieved.changed:
+        return True
     if achieved.latency_s is None:
         return False
     return abs(achieved.latency_s - ordered_s) > tolerance_s(achieved)

@@ -144,3 +144,36 @@ def test_streams_of_other_shapes_are_rejected() -> None:
         achieved_latency(times_s, q, times_s, q, active=np.ones(4, dtype=np.bool_))
     with pytest.raises(AchievedLatencyError, match="not a range"):
         achieved_latency(times_s, q, times_s, q, lowest_s=1.0, highest_s=0.5)
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5, 0.8])
+@pytest.mark.parametrize("after_s", [0.2, 0.35])
+def test_a_delay_that_changes_is_noticed_with_its_pieces(
+    share: float, after_s: float, rng: np.random.Generator
+) -> None:
+    """A delay that grows from 100 ms on the way is flagged, and its pieces are named."""
+    movement = made_movement(rng)
+    before, after = (
+        record(movement, latency_s, np.random.default_rng(8)) for latency_s in (0.1, after_s)
+    )
+    later = before.actual_times_s > share * before.actual_times_s[-1]
+    both = np.where(later[:, None, None], after.actual_rotations, before.actual_rotations)
+    result = latency_of_runs([replace(before, actual_rotations=both)])
+    assert result.changed
+    assert is_off(result, 0.1)
+    assert is_off(result, 0.15)
+    assert result.pieces_s[0] == pytest.approx(0.1, abs=1.0 * MS)
+    # The last piece begins at 75 % of the phase, which may be before the change.
+    assert result.pieces_s[-1] == pytest.approx(after_s, abs=5.0 * MS)
+    assert result.reason is not None
+    assert "changed during the phase; its pieces, in order: 100 ms, " in result.reason
+
+
+@pytest.mark.parametrize("noise_deg", [0.0, 1.5])
+def test_a_constant_delay_has_not_changed(noise_deg: float, rng: np.random.Generator) -> None:
+    """Noise, jitter and dropped frames do not make pieces of one delay differ."""
+    flaws = Flaws(noise_deg=noise_deg, jitter_s=0.002, dropped=0.1)
+    result = latency_of_runs([record(made_movement(rng), 0.125, rng, flaws)])
+    assert not result.changed
+    assert result.pieces_s == pytest.approx([0.125] * 4, abs=4.0 * MS)
+    assert result.reason is None
