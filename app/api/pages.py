@@ -20,7 +20,7 @@ from starlette.types import Scope
 _WORTH_IT = ("text/javascript", "text/css", "image/svg+xml", "application/json")
 _SMALL_BYTES = 1024
 _LEVEL = 6
-PAGES = {"/": "console/index.html", "/tablet": "tablet/index.html"}
+PAGES = {"/": "console/index.html", "/tablet": "tablet/index.html", "/vr": "vr/index.html"}
 # A service worker controls the addresses next to and below its own, which identifies it.
 TABLET_WORKER = "/tablet-worker.js"
 # Workers that decode compressed models with WebAssembly. A worker has the policy of its own file,

@@ -192,6 +192,8 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/tablet/acknowledge": TABLET,
     "POST /api/tablet/submissions": TABLET,
     "POST /api/vr/avatar": HEADSET,
+    "GET /api/vr/bodies/{content_hash}/file": HEADSET,
+    "GET /api/vr/bodies/{content_hash}/binding": HEADSET,
     "WEBSOCKET /api/vr/stream": HEADSET,
 }
 

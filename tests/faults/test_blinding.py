@@ -43,7 +43,7 @@ CANARIES = canaries((137.25, 262.5), more=("canary",))
 """Both latencies in ms and s, and the names of their conditions."""
 LOOK_EVERY_S = 0.02
 SPEED = 8.0
-PAGES = ("/", "/tablet")
+PAGES = ("/", "/tablet", "/vr")
 
 
 def canary_study() -> str:

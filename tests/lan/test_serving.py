@@ -208,7 +208,7 @@ def test_terminal_console_and_help_page_show_the_same_network(lan: LanServer) ->
     assert fingerprint[:11] in httpx2.get(lan.help_url).text
     assert reply["cable"] == {
         "command": f"adb reverse tcp:{lan.port} tcp:{lan.port}",
-        "url": f"http://localhost:{lan.port}",
+        "url": f"http://localhost:{lan.port}/vr",
     }
     # The console was opened at localhost; the tablet must not be sent to its own localhost.
     assert shown["url"] == f"{lan.secure_url}/tablet?code={shown['code']}"

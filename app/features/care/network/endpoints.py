@@ -34,8 +34,14 @@ def get_network(context: Context, _: SignedIn) -> NetworkView:
 
 
 def _address(url: str) -> AddressView:
-    tablet = f"{url}/tablet"
-    return AddressView(url=url, tablet_url=tablet, tablet_qr_svg=qr_svg(tablet))
+    tablet, headset = f"{url}/tablet", f"{url}/vr"
+    return AddressView(
+        url=url,
+        tablet_url=tablet,
+        tablet_qr_svg=qr_svg(tablet),
+        headset_url=headset,
+        headset_qr_svg=qr_svg(headset),
+    )
 
 
 def _certificate(shown: ShownCertificate) -> CertificateView:
@@ -52,4 +58,6 @@ def _certificate(shown: ShownCertificate) -> CertificateView:
 def _cable(reach: Reach) -> CableView:
     # The headset's port of this number is forwarded here; browsers treat `localhost` as secure.
     port = reach.port
-    return CableView(command=f"adb reverse tcp:{port} tcp:{port}", url=f"http://localhost:{port}")
+    return CableView(
+        command=f"adb reverse tcp:{port} tcp:{port}", url=f"http://localhost:{port}/vr"
+    )

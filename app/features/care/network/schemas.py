@@ -7,11 +7,13 @@ from pydantic import BaseModel
 
 
 class AddressView(BaseModel):
-    """An address for devices, with the QR code of the tablet's page at this address."""
+    """An address for devices, with the QR codes of the tablet's and headset's pages there."""
 
     url: str
     tablet_url: str
     tablet_qr_svg: str
+    headset_url: str
+    headset_qr_svg: str
 
 
 class CertificateView(BaseModel):

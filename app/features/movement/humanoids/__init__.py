@@ -1,6 +1,7 @@
 """Bodies: humanoid models that give avatars their shape, identified by hash and named by people."""
 
 from app.features.movement.humanoids.licences import asked_terms, licence_is_read
+from app.features.movement.humanoids.schemas import BindingView
 from app.features.movement.humanoids.service import (
     body_by_name,
     figure_by_hash,
@@ -10,10 +11,12 @@ from app.features.movement.humanoids.service import (
     parsed_figure,
 )
 from app.features.movement.humanoids.shipped import SHIPPED_BODIES, add_shipped_bodies
+from app.features.movement.humanoids.uploading import stored_binding
 from app.features.movement.humanoids.worker_tasks import Refused, measure
 
 __all__ = [
     "SHIPPED_BODIES",
+    "BindingView",
     "Refused",
     "add_shipped_bodies",
     "asked_terms",
@@ -25,4 +28,5 @@ __all__ = [
     "measure",
     "named_bodies",
     "parsed_figure",
+    "stored_binding",
 ]

@@ -29,9 +29,9 @@ class NewPairing(BaseModel):
 class PairingView(BaseModel):
     """A single-use pairing code, valid until `expires_at`.
 
-    `url` and `qr_svg` open the page with the code; both are null if no other device can reach the
-    server. A headset's client is given the address of the server and the code is typed in; it has
-    no page to scan, so its `qr_svg` is null. `help_url` is the page from which a new device gets
+    `url` and `qr_svg` open the page of a tablet or a headset with the code; both are null if no
+    other device can reach the server. `server_url` is the address of the server, for a headset's
+    own program, into which the code is typed. `help_url` is the page from which a new device gets
     the lab's certificate; null if there is nothing to install.
     """
 
@@ -39,6 +39,7 @@ class PairingView(BaseModel):
     code: str
     url: str | None
     qr_svg: str | None
+    server_url: str | None
     help_url: str | None
     help_qr_svg: str | None
     expires_at: datetime
@@ -63,6 +64,7 @@ class PairedView(BaseModel):
 
 router = APIRouter(tags=["devices"])
 TABLET_COOKIE_DAYS = 2
+PAGE_OF: dict[DeviceKind, str] = {"tablet": "/tablet", "headset": "/vr"}
 
 
 @router.post("/sessions/{session_id}/pairings", status_code=201)
@@ -81,13 +83,13 @@ def post_pairing(
     )
     reach = context.network.reach
     base = reach.for_devices(str(request.base_url))
-    tablet = body.device == "tablet" and base is not None
-    url = f"{base}/tablet?code={made.code}" if tablet else base
+    url = None if base is None else f"{base}{PAGE_OF[body.device]}?code={made.code}"
     return PairingView(
         device=body.device,
         code=made.code,
         url=url,
-        qr_svg=qr_svg(url) if tablet and url is not None else None,
+        qr_svg=None if url is None else qr_svg(url),
+        server_url=base,
         help_url=reach.help_url,
         help_qr_svg=None if reach.help_url is None else qr_svg(reach.help_url),
         expires_at=made.expires_at,

@@ -2473,6 +2473,46 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/vr/bodies/{content_hash}/binding": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Body Binding
+         * @description Return how the nodes of the body's file follow the parts of the avatar, for drawing poses.
+         */
+        readonly get: operations["get_body_binding_api_vr_bodies__content_hash__binding_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/vr/bodies/{content_hash}/file": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Body File
+         * @description Send the file of a body that the session's avatar can wear; the headset may cache it.
+         */
+        readonly get: operations["get_body_file_api_vr_bodies__content_hash__file_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/walking/models": {
         readonly parameters: {
             readonly query?: never;
@@ -2854,9 +2894,13 @@ export interface components {
         };
         /**
          * AddressView
-         * @description An address for devices, with the QR code of the tablet's page at this address.
+         * @description An address for devices, with the QR codes of the tablet's and headset's pages there.
          */
         readonly AddressView: {
+            /** Headset Qr Svg */
+            readonly headset_qr_svg: string;
+            /** Headset Url */
+            readonly headset_url: string;
             /** Tablet Qr Svg */
             readonly tablet_qr_svg: string;
             /** Tablet Url */
@@ -6466,9 +6510,9 @@ export interface components {
          * PairingView
          * @description A single-use pairing code, valid until `expires_at`.
          *
-         *     `url` and `qr_svg` open the page with the code; both are null if no other device can reach the
-         *     server. A headset's client is given the address of the server and the code is typed in; it has
-         *     no page to scan, so its `qr_svg` is null. `help_url` is the page from which a new device gets
+         *     `url` and `qr_svg` open the page of a tablet or a headset with the code; both are null if no
+         *     other device can reach the server. `server_url` is the address of the server, for a headset's
+         *     own program, into which the code is typed. `help_url` is the page from which a new device gets
          *     the lab's certificate; null if there is nothing to install.
          */
         readonly PairingView: {
@@ -6490,6 +6534,8 @@ export interface components {
             readonly help_url: string | null;
             /** Qr Svg */
             readonly qr_svg: string | null;
+            /** Server Url */
+            readonly server_url: string | null;
             /** Url */
             readonly url: string | null;
         };
@@ -14613,6 +14659,86 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["SessionAvatar"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_body_binding_api_vr_bodies__content_hash__binding_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly content_hash: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["BindingView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_body_file_api_vr_bodies__content_hash__file_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly content_hash: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The model's file as it was uploaded. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/octet-stream": string;
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

@@ -13,7 +13,7 @@ export {
   type StreamName,
   VALUES_PER_FRAME,
 } from "./wire/batch";
-export { GOAL_NAMES, type GoalName, type GoalState, type ReportBody } from "./wire/fromClient";
+export type { GoalState, ReportBody } from "./wire/fromClient";
 export type {
   AvatarOrder,
   CalibrationOrder,

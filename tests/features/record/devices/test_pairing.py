@@ -200,12 +200,17 @@ def test_only_tablets_and_headsets_pair(lab: Lab, device: str | None) -> None:
 
 
 @pytest.mark.one_engine
-def test_the_link_opens_the_tablets_page_with_the_code(lab: Lab) -> None:
-    """A pairing has a link to the tablet's page with the code, also as a QR code in SVG."""
+@pytest.mark.parametrize(("device", "page"), [("tablet", "/tablet"), ("headset", "/vr")])
+def test_the_link_opens_the_devices_page_with_the_code(lab: Lab, device: str, page: str) -> None:
+    """A pairing has a link to the device's page with the code, also as a QR code in SVG.
+
+    It also has the address of the server, for a headset's own program.
+    """
     path = f"/api/sessions/{lab.join()['id']}/pairings"
-    shown = ok(lab.operator.post(path, json={"device": "tablet"}))
-    assert shown["url"] == f"http://testserver/tablet?code={shown['code']}"
+    shown = ok(lab.operator.post(path, json={"device": device}))
+    assert shown["url"] == f"http://testserver{page}?code={shown['code']}"
     assert shown["qr_svg"].startswith("<svg")
+    assert shown["server_url"] == "http://testserver"
 
 
 @pytest.mark.one_engine

@@ -1,6 +1,7 @@
 """Tests of the body that a condition prescribes: ordered, built, recorded and exported by name."""
 
 import pytest
+from fastapi.testclient import TestClient
 from sqlalchemy import select
 
 from app.features.record.sessions.contents import content_body, contents_of
@@ -75,6 +76,35 @@ def test_the_avatar_of_a_named_body_is_built_and_recorded(
     ]
     wrong = request_avatar(fresh_lab, token, {"stature_m": 1.7, "body": "fifth"})
     assert error(wrong, 422, "invalid_input")["valid"] == ["five", "four"]
+
+
+@pytest.mark.one_engine
+def test_a_headset_fetches_the_bodies_of_its_own_session_only(
+    fresh_lab: Lab, hashes: dict[str, str]
+) -> None:
+    """A headset gets file and binding of every body that its study names, in any order.
+
+    A body of no condition, and one asked for by a headset of another study, are not found.
+    """
+    view: Json = ok(fresh_lab.operator.post(f"/api/studies/{KEY}/sessions", json={"kind": "test"}))
+    headset = bearing(fresh_lab, view["id"])
+    for name, file in (("four", FOUR), ("five", FIVE)):
+        answer = headset.get(f"/api/vr/bodies/{hashes[name]}/file")
+        assert (answer.status_code, answer.content) == (200, file)
+        assert "max-age" in answer.headers["cache-control"]
+        own = ok(headset.get(f"/api/vr/bodies/{hashes[name]}/binding"))
+        assert own == ok(fresh_lab.operator.get(f"/api/humanoids/{hashes[name]}/binding"))
+    error(headset.get(f"/api/vr/bodies/{'0' * 64}/file"), 404, "not_found")
+    other = bearing(fresh_lab, fresh_lab.join()["id"])
+    for what in ("file", "binding"):
+        error(other.get(f"/api/vr/bodies/{hashes['four']}/{what}"), 404, "not_found")
+
+
+def bearing(lab: Lab, session_id: str) -> TestClient:
+    """Return a client with the token of the session's headset."""
+    client = lab.stranger()
+    client.headers["authorization"] = f"Bearer {lab.headset_token(session_id)}"
+    return client
 
 
 def test_an_order_without_a_body_is_what_it_was() -> None:

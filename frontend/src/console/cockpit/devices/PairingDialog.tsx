@@ -35,6 +35,8 @@ export function PairingDialog({ session, device, onClose }: PairingDialogProps):
   );
 }
 
+const PAGES: Readonly<Record<Device, string>> = { tablet: "/tablet", headset: "/vr" };
+
 interface CodeProps extends PairingDialogProps {
   readonly device: Device;
 }
@@ -109,6 +111,11 @@ function CodeShown({ pairing, device, onRenew }: CodeShownProps): JSX.Element {
       ) : (
         <span className={classes.url}>{pairing.url}</span>
       )}
+      {device === "headset" && pairing.server_url !== null && (
+        <span className={classes.program}>
+          {t("pairing.how.program", { url: pairing.server_url })}
+        </span>
+      )}
       <FirstTime pairing={pairing} />
       <span className="numbers">{t("pairing.left", { time: clockFace(seconds(left)) })}</span>
     </div>
@@ -129,21 +136,20 @@ function LocalhostOnly({
     <Notice tone="warn" title={t("pairing.onlyHere")}>
       <p className={classes.localhostOnly}>{t("pairing.onlyHere.body")}</p>
       <code className={classes.localhostOnly}>./run --lan</code>
-      {device === "tablet" ? (
-        <p className={classes.localhostOnly}>
-          <Anchor href={`/tablet?code=${pairing.code}`} target="_blank">
-            {t("pairing.onlyHere.open")}
-          </Anchor>
-        </p>
-      ) : (
-        network !== undefined && (
-          <>
-            <p className={classes.localhostOnly}>{t("pairing.onlyHere.cable")}</p>
-            <code className={classes.localhostOnly}>{network.cable.command}</code>
-            <code className={classes.localhostOnly}>{network.cable.url}</code>
-          </>
-        )
+      {device === "headset" && network !== undefined && (
+        <>
+          <p className={classes.localhostOnly}>{t("pairing.onlyHere.cable")}</p>
+          <code className={classes.localhostOnly}>{network.cable.command}</code>
+          <code className={classes.localhostOnly}>
+            {`${network.cable.url}?code=${pairing.code}`}
+          </code>
+        </>
       )}
+      <p className={classes.localhostOnly}>
+        <Anchor href={`${PAGES[device]}?code=${pairing.code}`} target="_blank">
+          {t(`pairing.onlyHere.open.${device}`)}
+        </Anchor>
+      </p>
     </Notice>
   );
 }

@@ -13,7 +13,9 @@ export const sideEn = {
   "device.revoke.tablet": "Disconnect the tablet",
   "device.revoke.headset": "Disconnect the headset",
   "pairing.how.tablet": "Scan the code with the tablet, or enter it at the address below.",
-  "pairing.how.headset": "Enter this code and the address below in the program on the headset.",
+  "pairing.how.headset":
+    "Scan the code with the headset's camera, or open the address below in its browser.",
+  "pairing.how.program": "A program of your own takes the address {{url}} and the code.",
   "pairing.qr": "QR code with the pairing address",
   "pairing.left": "Valid for {{time}} min",
   "pairing.expired": "The code has expired.",
@@ -78,7 +80,8 @@ export const sideDe: Readonly<Record<keyof typeof sideEn, string>> = {
   "pairing.how.tablet":
     "Scannen Sie den Code mit dem Tablet oder geben Sie ihn unter der Adresse unten ein.",
   "pairing.how.headset":
-    "Geben Sie diesen Code und die Adresse unten im Programm auf dem Headset ein.",
+    "Scannen Sie den Code mit der Kamera des Headsets oder öffnen Sie die Adresse unten in seinem Browser.",
+  "pairing.how.program": "Ein eigenes Programm bekommt die Adresse {{url}} und den Code.",
   "pairing.qr": "QR-Code mit der Adresse zum Koppeln",
   "pairing.left": "Gültig für {{time}} min",
   "pairing.expired": "Der Code ist abgelaufen.",

@@ -53,7 +53,7 @@ function Parts({ network }: { readonly network: Network }): JSX.Element {
   );
 }
 
-/** Every address, the best one with the QR code of the tablet's page. */
+/** Every address, the best one with the QR codes of the tablet's and the headset's page. */
 function Addresses({ network }: { readonly network: Network }): JSX.Element {
   const { t } = useTexts();
   const [best] = network.addresses;
@@ -80,11 +80,18 @@ function Addresses({ network }: { readonly network: Network }): JSX.Element {
           </div>
         </dl>
         {best !== undefined && (
-          <QrCode
-            svg={best.tablet_qr_svg}
-            alt={t("network.addresses.tablet", { url: best.tablet_url })}
-            caption={t("network.addresses.scan")}
-          />
+          <div className={classes.codes}>
+            <QrCode
+              svg={best.tablet_qr_svg}
+              alt={t("network.addresses.tablet", { url: best.tablet_url })}
+              caption={t("network.addresses.scan")}
+            />
+            <QrCode
+              svg={best.headset_qr_svg}
+              alt={t("network.addresses.headset", { url: best.headset_url })}
+              caption={t("network.addresses.scan.headset")}
+            />
+          </div>
         )}
       </div>
       {best === undefined && network.mode !== "loopback" && (

@@ -14,6 +14,8 @@ export const networkEn = {
   "network.addresses.devices": "Tablets and headsets",
   "network.addresses.tablet": "QR code of the tablet's page, {{url}}",
   "network.addresses.scan": "The tablet's page",
+  "network.addresses.headset": "QR code of the headset's page, {{url}}",
+  "network.addresses.scan.headset": "The headset's page",
   "network.local": "This computer",
   "network.first": "Setting up a new device",
   "network.first.body":
@@ -40,7 +42,8 @@ export const networkEn = {
   "network.none.body": "Once it is on a network, its addresses appear here within a minute.",
   "pairing.onlyHere": "Only this computer can reach the server",
   "pairing.onlyHere.body": "To let other devices in, stop the server and start it with:",
-  "pairing.onlyHere.open": "Or open the tablet's page on this computer",
+  "pairing.onlyHere.open.tablet": "Or open the tablet's page on this computer",
+  "pairing.onlyHere.open.headset": "Or open the headset's page on this computer",
   "pairing.onlyHere.cable":
     "Or connect the headset with a USB cable, run the command and use the address:",
   "pairing.first": "New device? Install the certificate",
@@ -62,6 +65,8 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "network.addresses.devices": "Tablets und Headsets",
   "network.addresses.tablet": "QR-Code der Seite für das Tablet, {{url}}",
   "network.addresses.scan": "Seite für das Tablet",
+  "network.addresses.headset": "QR-Code der Seite für das Headset, {{url}}",
+  "network.addresses.scan.headset": "Seite für das Headset",
   "network.local": "Dieser Rechner",
   "network.first": "Ein neues Gerät einrichten",
   "network.first.body":
@@ -90,7 +95,8 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "pairing.onlyHere": "Nur dieser Rechner erreicht den Server",
   "pairing.onlyHere.body":
     "Damit andere Geräte ihn erreichen, beenden Sie den Server und starten ihn so:",
-  "pairing.onlyHere.open": "Oder öffnen Sie die Seite für das Tablet auf diesem Rechner",
+  "pairing.onlyHere.open.tablet": "Oder öffnen Sie die Seite für das Tablet auf diesem Rechner",
+  "pairing.onlyHere.open.headset": "Oder öffnen Sie die Seite für das Headset auf diesem Rechner",
   "pairing.onlyHere.cable":
     "Oder verbinden Sie das Headset per USB-Kabel, führen den Befehl aus und benutzen die Adresse:",
   "pairing.first": "Neues Gerät? Installieren Sie das Zertifikat",

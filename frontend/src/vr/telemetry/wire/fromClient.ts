@@ -4,6 +4,7 @@
  * The server closes the connection on an invalid message, and from the journal it would be resent
  * forever: so each message is checked by these schemas before it is sent or journaled.
  */
+import { GOAL_PARTS } from "@shared/avatar/goals";
 import * as v from "valibot";
 import {
   CompletionNumber,
@@ -97,16 +98,7 @@ const AvatarChangeReport = v.strictObject({
   held_rad: v.record(Name40, v.pipe(v.number(), v.minValue(-7), v.maxValue(7))),
 });
 
-/** The parts of the body whose goals may be tracked, in the order of the inverse kinematics. */
-export const GOAL_NAMES = [
-  "Hips",
-  "Head",
-  "LeftHand",
-  "RightHand",
-  "LeftLowerLeg",
-  "RightLowerLeg",
-] as const;
-export type GoalName = (typeof GOAL_NAMES)[number];
+const GoalKey = v.picklist(GOAL_PARTS);
 
 /** How a goal is known: measured; computed from the other goals; or not at all at the moment. */
 const GoalState = v.picklist(["tracked", "inferred", "lost"]);
@@ -118,20 +110,18 @@ const GoalsReport = v.strictObject({
   t_s: Seconds,
   frame_seq: Seq,
   source: Name40,
-  states: v.strictObject({
-    Hips: GoalState,
-    Head: GoalState,
-    LeftHand: GoalState,
-    RightHand: GoalState,
-    LeftLowerLeg: GoalState,
-    RightLowerLeg: GoalState,
-  }),
+  states: v.pipe(
+    v.record(GoalKey, GoalState),
+    v.check(
+      (states) => GOAL_PARTS.every((part) => states[part] !== undefined),
+      "states must name all six goals",
+    ),
+  ),
 });
 
 const Metres = v.pipe(v.number(), v.finite(), v.minValue(-10), v.maxValue(10));
 const Length = v.pipe(v.number(), v.finite(), v.minValue(0), v.maxValue(10));
 const Cosine = v.pipe(v.number(), v.finite(), v.minValue(-1.001), v.maxValue(1.001));
-const GoalKey = v.picklist(GOAL_NAMES);
 
 /** A completed calibration, used from now on; `tracker_from_goal` as docs/protocol.md says. */
 const CalibrationReport = v.strictObject({
