@@ -2,11 +2,12 @@
 import { Center, Loader } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
 import { ApiError, isUnauthorised } from "@shared/api/request";
+import { codeFromAddress } from "@shared/pairingCode";
 import { useMutation } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef } from "react";
 import { Failure } from "./errors";
 import { useTexts } from "./i18n";
-import { codeFromAddress, pairedBefore, rememberPaired } from "./pairing";
+import { pairedBefore, rememberPaired } from "./pairing";
 import { Screens } from "./Screens";
 import { Pairing } from "./screens/Pairing";
 import { useTabletState } from "./useTabletState";

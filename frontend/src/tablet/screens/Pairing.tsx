@@ -3,16 +3,14 @@
  */
 import { Button, Loader, Text, Title } from "@mantine/core";
 import { Unreachable } from "@shared/api/request";
-import { Icon } from "@shared/ui/Icon";
+import { writtenCode } from "@shared/pairingCode";
+import { CodeEntry } from "@shared/ui/CodeEntry";
 import { Mark } from "@shared/ui/Mark";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { CODE_LENGTH, codeCharacters, writtenCode } from "../pairing";
 import classes from "./Pairing.module.css";
-
-const ROWS = ["1234567890", "QWERTYUIOP", "ASDFGHJKL", "ZXCVBNM"] as const;
 
 interface PairingProps {
   readonly ended: boolean;
@@ -24,11 +22,6 @@ interface PairingProps {
 export function Pairing({ ended, pending, error, onCode }: PairingProps): JSX.Element {
   const { t } = useTexts();
   const [characters, setCharacters] = useState("");
-  const enter = (typed: string) => {
-    const next = codeCharacters(typed);
-    setCharacters(next);
-    if (next.length === CODE_LENGTH && next !== characters) onCode(writtenCode(next));
-  };
   return (
     <main className={classes.page}>
       <Mark size={40} />
@@ -38,30 +31,13 @@ export function Pairing({ ended, pending, error, onCode }: PairingProps): JSX.El
           {t("pair.lead")}
         </Text>
       </div>
-      <form
-        onSubmit={(event) => {
-          event.preventDefault();
-          if (characters.length === CODE_LENGTH) onCode(writtenCode(characters));
-        }}
-      >
-        <input
-          className={classes.code}
-          aria-label={t("pair.code")}
-          // The keys below are the keyboard; the system's own would cover half of the screen.
-          inputMode="none"
-          autoComplete="off"
-          autoCapitalize="characters"
-          spellCheck={false}
-          placeholder="···-···"
-          value={writtenCode(characters)}
-          readOnly={pending}
-          onChange={(event) => enter(event.currentTarget.value)}
-        />
-      </form>
-      <Keys
+      <CodeEntry
+        characters={characters}
         disabled={pending}
-        onKey={(key) => enter(characters + key)}
-        onDelete={() => enter(characters.slice(0, -1))}
+        label={t("pair.code")}
+        deleteLabel={t("pair.delete")}
+        onCharacters={setCharacters}
+        onCode={onCode}
       />
       <div className={classes.state}>
         <PairingState
@@ -70,46 +46,6 @@ export function Pairing({ ended, pending, error, onCode }: PairingProps): JSX.El
         />
       </div>
     </main>
-  );
-}
-
-interface KeysProps {
-  readonly disabled: boolean;
-  readonly onKey: (key: string) => void;
-  readonly onDelete: () => void;
-}
-
-function Keys({ disabled, onKey, onDelete }: KeysProps): JSX.Element {
-  const { t } = useTexts();
-  return (
-    <div className={classes.keys}>
-      {ROWS.map((row) => (
-        <div key={row} className={classes.row}>
-          {[...row].map((key) => (
-            <button
-              key={key}
-              type="button"
-              className={classes.key}
-              disabled={disabled}
-              onClick={() => onKey(key)}
-            >
-              {key}
-            </button>
-          ))}
-          {row === ROWS[3] && (
-            <button
-              type="button"
-              className={`${classes.key} ${classes.wide}`}
-              aria-label={t("pair.delete")}
-              disabled={disabled}
-              onClick={onDelete}
-            >
-              <Icon name="backspace" size={28} />
-            </button>
-          )}
-        </div>
-      ))}
-    </div>
   );
 }
 

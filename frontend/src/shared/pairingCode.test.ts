@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { codeCharacters, codeFromAddress, writtenCode } from "./pairing";
+import { codeCharacters, codeFromAddress, writtenCode } from "./pairingCode";
 
 describe("a pairing code", () => {
   it("is accepted however it is typed", () => {

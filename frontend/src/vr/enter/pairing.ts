@@ -1,0 +1,47 @@
+/**
+ * The session that this headset is paired with, kept so that a reload or a killed page continues.
+ *
+ * The token opens this session's socket and nothing else. It stays in the browser's storage until
+ * the server rejects it or another code is used.
+ */
+import { ApiError, answer, server } from "@shared/api/request";
+
+export interface Pairing {
+  readonly sessionId: string;
+  readonly token: string;
+}
+
+const KEY = "reembody.vr.pairing";
+
+/** The pairing of this browser; null if there is none. */
+export function storedPairing(storage: Pick<Storage, "getItem"> = localStorage): Pairing | null {
+  try {
+    const { sessionId, token } = JSON.parse(storage.getItem(KEY) ?? "null") ?? {};
+    return typeof sessionId === "string" && typeof token === "string" ? { sessionId, token } : null;
+  } catch {
+    return null;
+  }
+}
+
+export const storePairing = (pairing: Pairing): void =>
+  localStorage.setItem(KEY, JSON.stringify(pairing));
+
+export const forgetPairing = (): void => localStorage.removeItem(KEY);
+
+interface Paired {
+  readonly device: string;
+  readonly session_id: string;
+  readonly token: string | null;
+}
+
+/**
+ * Use a code, once. Throws ApiError if the server rejects it or it belongs to a tablet (with the
+ * code `wrong_device`), and Unreachable without an answer.
+ */
+export async function pair(code: string, name: string): Promise<Pairing> {
+  const paired = await answer<Paired>(server.POST("/api/devices/pair", { body: { code, name } }));
+  if (paired.token === null) {
+    throw new ApiError(409, { code: "wrong_device", message: "the code belongs to a tablet" });
+  }
+  return { sessionId: paired.session_id, token: paired.token };
+}

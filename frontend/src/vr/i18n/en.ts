@@ -1,0 +1,62 @@
+/** The texts of the headset's page in English; `de.ts` has the same keys. */
+export const en = {
+  "enter.title": "Enter the study",
+  "enter.lead": "Put the headset on and make sure the picture is sharp. Then press the button.",
+  "enter.button": "Enter VR",
+  "enter.again": "Return to VR",
+  "enter.entering": "Entering VR",
+  "enter.language": "Language",
+  "enter.simulated": "Simulated session",
+  "enter.connecting": "Connecting to the study computer",
+  "enter.waiting":
+    "The study computer does not answer. This page keeps trying; you do not have to do anything.",
+  "enter.offline":
+    "The connection is lost and is being restored. Everything recorded so far is kept on this headset.",
+  "enter.over": "The session has ended",
+  "enter.overBody": "You can take the headset off. Thank you for taking part.",
+  "enter.failed": "VR could not be started",
+  "enter.stopped": "This headset has stopped",
+  "enter.ended": "VR was closed. The session waits until you return.",
+  "enter.disconnect": "Use another code",
+  "pair.title": "Connect this headset",
+  "pair.lead": "Enter the code shown on the experimenter's screen.",
+  "pair.code": "Pairing code",
+  "pair.delete": "Delete last character",
+  "pair.connecting": "Connecting",
+  "pair.ended.title": "This headset was disconnected",
+  "pair.ended.body":
+    "The experimenter has to connect it again. What was recorded so far is kept on this headset.",
+  "pair.tablet": "This code belongs to a tablet.",
+  "pair.tabletRemedy": "Ask the experimenter for the code of the headset.",
+  "error.unreachable": "The headset has no connection to the study computer.",
+  "error.unreachableRemedy": "Check the wireless network of the headset, then try again.",
+  "error.unexpected": "Something went wrong on this page.",
+  "error.retry": "Try again",
+  "support.insecure": "VR needs a secure connection",
+  "support.insecure.quest":
+    "Connect the headset to the computer by USB cable, run “adb reverse tcp:8321 tcp:8321” there, and open http://localhost:8321/vr here. Or open the https address of the page Network in the console and accept the browser's warning once.",
+  "support.insecure.pico":
+    "Open the https address shown on the page Network in the console and accept the browser's warning once. A USB cable works as well: run “adb reverse tcp:8321 tcp:8321” on the computer and open http://localhost:8321/vr here.",
+  "support.insecure.vision_pro":
+    "Open the https address shown on the page Network in the console. Install the lab's certificate from the help page first: Safari refuses live connections without it.",
+  "support.insecure.android_xr":
+    "Open the https address shown on the page Network in the console. Install the lab's certificate in the settings first, or accept the browser's warning once.",
+  "support.insecure.computer":
+    "Open this page as http://localhost:8321/vr on the study computer, or at the https address shown on the page Network in the console.",
+  "support.no_webxr": "This browser cannot show VR",
+  "support.no_webxr.quest":
+    "Update the headset's browser: it needs Meta Quest Browser 15 or newer.",
+  "support.no_webxr.pico": "Update the headset's browser: it needs PICO Browser 4 or newer.",
+  "support.no_webxr.vision_pro":
+    "Update to visionOS 2 or newer. On visionOS 1 switch on WebXR in Settings > Apps > Safari > Advanced > Feature Flags.",
+  "support.no_webxr.android_xr": "Open this page in Chrome and update it.",
+  "support.no_webxr.computer":
+    "Open this page in the headset's own browser, or in Chrome or Edge on a computer with a headset.",
+  "support.no_headset": "No headset was found",
+  "support.no_headset.quest": "Restart the headset's browser and open this page again.",
+  "support.no_headset.pico": "Restart the headset's browser and open this page again.",
+  "support.no_headset.vision_pro": "Restart Safari and open this page again.",
+  "support.no_headset.android_xr": "Restart Chrome and open this page again.",
+  "support.no_headset.computer":
+    "Start SteamVR or the headset's own program and switch the headset on. This page notices it by itself.",
+} as const;
