@@ -76,8 +76,14 @@ class JobQueue(Part, ABC):
         Raises InvalidInput if the job refuses its input, exceeds its time or memory, or fails;
         NotDurable if too many jobs are waiting.
         """
+        return await self.run_within(self.within_s, task, *args, **kwargs)
+
+    async def run_within(
+        self, within_s: float, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs
+    ) -> T:
+        """Run a job like `run`, with a shorter time limit of its own."""
         async with self._my_turn():
-            return await self._done(task, *args, **kwargs)
+            return await self._done(within_s, task, *args, **kwargs)
 
     async def run_cached(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Run a job with a cached result: it must depend on nothing but its hashable arguments."""
@@ -86,7 +92,7 @@ class JobQueue(Part, ABC):
             async with self._my_turn():
                 # The preceding job may have computed the same result.
                 if name not in self._cache:
-                    self._cache[name] = await self._done(task, *args, **kwargs)
+                    self._cache[name] = await self._done(self.within_s, task, *args, **kwargs)
                     while self._cache_is_full():
                         self._cache.popitem(last=False)
                 answer: T = self._cache[name]
@@ -123,13 +129,15 @@ class JobQueue(Part, ABC):
         finally:
             self._waiting -= 1
 
-    async def _done(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    async def _done(
+        self, within_s: float, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs
+    ) -> T:
         future = self._worker.submit(task, *args, **kwargs)
         try:
-            return await asyncio.wait_for(asyncio.wrap_future(future), self.within_s)
+            return await asyncio.wait_for(asyncio.wrap_future(future), within_s)
         except TimeoutError as error:
             await run_sync(self.stop)
-            raise self._too_much(f"it took longer than {self.within_s:g} s") from error
+            raise self._too_much(f"it took longer than {within_s:g} s") from error
         except self.memory_errors as error:
             await run_sync(self.stop)
             raise self._too_much("it needed too much memory") from error

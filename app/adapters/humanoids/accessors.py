@@ -109,11 +109,11 @@ class Tables:
         """Return the Draco stream of a primitive; raises HumanoidFileError."""
         return bytes(self._view(draco.bufferView, place)[0])
 
-    def image(self, image: Image, place: str) -> bytes:
-        """Return the bytes of an image in the file; raises HumanoidFileError."""
+    def image(self, image: Image, place: str) -> memoryview:
+        """Return the bytes of an image in the file, not copied; raises HumanoidFileError."""
         if image.bufferView is not None:
-            return bytes(self._view(image.bufferView, place)[0])
-        return embedded(image.uri or "", place)
+            return self._view(image.bufferView, place)[0]
+        return memoryview(embedded(image.uri or "", place))
 
     def accessor(self, number: int) -> Accessor:
         """Return an accessor's description; raises HumanoidFileError if there is none."""

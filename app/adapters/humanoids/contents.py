@@ -1,7 +1,8 @@
 """Count what a model costs to draw: triangles, vertices, and the sizes of its textures.
 
 Sizes of textures are read from the headers of PNG, JPEG, WebP and KTX2 images in the file; no image
-is decoded, as the server draws none.
+is decoded, as the server draws none. Browsers and headsets do draw them, and a picture of a few
+kilobytes can ask for gigabytes there, so `check_textures` limits what the headers state.
 
 Source: W3C, PNG 3rd edition, 11.2.1; ITU-T T.81, B.2.2; RFC 9649 (WebP), 2.5 to 2.7; Khronos, KTX
 2.0, 3.1.
@@ -15,18 +16,31 @@ from app.adapters.humanoids.accessors import Tables
 from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.document import Document, Primitive
 
+Bytes = bytes | memoryview
 _TRIANGLES, _STRIPS_AND_FANS = 4, (5, 6)
+MOST_TEXTURES = 1_000
+MOST_SIDE_PX = 8_192
+MOST_PIXELS = 200_000_000
+"""Total number of pixels; with four bytes each and smaller copies (mipmaps), about 1 GiB."""
+_MOST_JPEG_SEGMENTS = 1_000
+_VALID = "PNG, JPEG, WebP and KTX2"
+_UNSIZED = {b"GIF8": "GIF", b"BM": "BMP", b"\0\0\x01\0": "ICO"}
 _KTX2 = b"\xabKTX 20\xbb\r\n\x1a\n"
 
 
 @dataclass(frozen=True)
 class Texture:
-    """An image in a file; width and height are 0 where its header could not be read."""
+    """An image in a file; width and height are 0 where its header could not be read.
+
+    `problem`: why the image must not be drawn; empty if nothing is wrong with its header, or if it
+    is no image that any browser draws.
+    """
 
     media_type: str
     width: int
     height: int
     size_bytes: int
+    problem: str = ""
 
 
 @dataclass(frozen=True)
@@ -69,19 +83,83 @@ def _cost(primitives: Sequence[Primitive], document: Document) -> tuple[int, int
     return triangles, vertices
 
 
+def check_textures(textures: Sequence[Texture]) -> None:
+    """Raise HumanoidFileError if an image is damaged or too large, or if all are together."""
+    if len(textures) > MOST_TEXTURES:
+        raise HumanoidFileError(
+            f"The model has {len(textures)} pictures; up to {MOST_TEXTURES} are read. Export it"
+            " with fewer textures.",
+            "images",
+        )
+    for number, one in enumerate(textures):
+        if one.problem:
+            raise HumanoidFileError(one.problem, f"images.{number}")
+        if max(one.width, one.height) > MOST_SIDE_PX:
+            raise HumanoidFileError(
+                f"The picture has {one.width:,} x {one.height:,} pixels; up to {MOST_SIDE_PX:,} a"
+                " side are valid. Reduce the texture, to 2,048 for a standalone headset, and"
+                " export the model again.",
+                f"images.{number}",
+            )
+    pixels = sum(one.width * one.height for one in textures)
+    if pixels > MOST_PIXELS:
+        raise HumanoidFileError(
+            f"The {len(textures)} pictures have {pixels:,} pixels together; up to {MOST_PIXELS:,}"
+            " are valid. Reduce the largest textures and export the model again.",
+            "images",
+        )
+
+
 def _textures(document: Document, tables: Tables) -> list[Texture]:
+    if len(document.images) > MOST_TEXTURES:
+        return [Texture("", 0, 0, 0)] * len(document.images)
     found = []
     for number, image in enumerate(document.images):
         try:
             data = tables.image(image, f"images.{number}")
         except HumanoidFileError:
-            data = b""
+            data = memoryview(b"")
         media_type, width, height = size_of_image(data)
-        found.append(Texture(media_type, width, height, len(data)))
+        problem = _problem(data, media_type, width, height)
+        found.append(Texture(media_type, width, height, len(data), problem))
     return found
 
 
-def size_of_image(data: bytes) -> tuple[str, int, int]:
+def _problem(data: Bytes, media_type: str, width: int, height: int) -> str:
+    """Return why an image must not be drawn, from its header; empty if it may."""
+    other = next((kind for start, kind in _UNSIZED.items() if data[: len(start)] == start), "")
+    if data[4:8] == b"ftyp":
+        other = "AVIF or HEIF"
+    if other:
+        return f"The picture is {other}; valid are {_VALID}. Convert it and export the model again."
+    if media_type and not (width and height):
+        return (
+            f"The picture begins like {media_type} but states no size, so it is damaged. Replace"
+            " the texture and export the model again."
+        )
+    if media_type != "image/ktx2":
+        return ""
+    try:
+        depth, layers, faces, levels, packing = struct.unpack_from("<IIIII", data, 28)
+        # The index of the levels: place, length, and length without the packing (ZSTD, ZLIB).
+        plain = [struct.unpack_from("<QQQ", data, 80 + 24 * at)[2] for at in range(min(levels, 32))]
+    except struct.error:
+        return ""  # Without an index no level can be read, so nothing is drawn.
+    if depth or layers > 1 or faces > 1:
+        return (
+            f"The KTX2 picture has depth {depth}, {layers} layers and {faces} faces; valid is one"
+            " flat picture. Export the texture as one picture."
+        )
+    # At most 16 bytes a pixel, twice, because smaller copies add a third.
+    if packing and max(plain, default=0) > 32 * width * height + 65_536:
+        return (
+            f"The KTX2 picture of {width} x {height} pixels unpacks to {max(plain):,} bytes, which"
+            " cannot be right. Compress the texture again."
+        )
+    return ""
+
+
+def size_of_image(data: Bytes) -> tuple[str, int, int]:
     """Return the media type, width and height in pixels that an image's header states.
 
     The type is empty for unknown formats; the sizes are 0 if the header does not have them.
@@ -100,10 +178,15 @@ def size_of_image(data: bytes) -> tuple[str, int, int]:
     return "", 0, 0
 
 
-def _jpeg(data: bytes) -> tuple[int, int]:
+def _jpeg(data: Bytes) -> tuple[int, int]:
     at = 2
-    while data[at] == 0xFF:
+    for _ in range(_MOST_JPEG_SEGMENTS):
+        if data[at] != 0xFF:
+            break
         marker = data[at + 1]
+        if marker == 0xFF or marker == 1 or 0xD0 <= marker <= 0xD8:
+            at += 1 if marker == 0xFF else 2  # A byte of padding; a marker without a length.
+            continue
         # Any start of a frame; C4, C8 and CC are tables.
         if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
             height, width = struct.unpack_from(">HH", data, at + 5)
@@ -112,7 +195,7 @@ def _jpeg(data: bytes) -> tuple[int, int]:
     return 0, 0
 
 
-def _webp(data: bytes) -> tuple[int, int]:
+def _webp(data: Bytes) -> tuple[int, int]:
     kind = data[12:16]
     if kind == b"VP8X":
         return 1 + int.from_bytes(data[24:27], "little"), 1 + int.from_bytes(data[27:30], "little")

@@ -13,7 +13,7 @@ import numpy as np
 from app.adapters.humanoids.accessors import Tables
 from app.adapters.humanoids.bone_names import named_bones, vrm_nodes
 from app.adapters.humanoids.container import HumanoidFileError, open_container
-from app.adapters.humanoids.contents import Contents, contents_of
+from app.adapters.humanoids.contents import Contents, check_textures, contents_of
 from app.adapters.humanoids.document import Document, read_document
 from app.adapters.humanoids.nodes import Tree, rig_of, tree_of
 from app.adapters.humanoids.rights import ModelRights, rights_of
@@ -68,8 +68,12 @@ class ReadSkin:
     pieces: tuple[SkinPiece, ...]
 
 
-def read_humanoid(data: bytes, limits: Limits | None = None) -> ReadHumanoid:
+def read_humanoid(
+    data: bytes, limits: Limits | None = None, *, check_pictures: bool = True
+) -> ReadHumanoid:
     """Read a humanoid model from GLB, glTF with embedded buffers, or VRM 0.x and 1.0.
+
+    `check_pictures`: whether pictures that are too large, or damaged, are an error.
 
     Raises:
         HumanoidFileError: the file cannot be read, with the place; or the model is not a humanoid,
@@ -77,6 +81,9 @@ def read_humanoid(data: bytes, limits: Limits | None = None) -> ReadHumanoid:
     """
     most = Limits() if limits is None else limits
     document, tables = _opened(data, most)
+    contents = contents_of(document, tables)
+    if check_pictures:
+        check_textures(contents.textures)
     tree = tree_of(document)
     mapped = vrm_nodes(document)
     mesh, node_of_bone = _mesh(document, tree, tables, mapped, most)
@@ -91,7 +98,7 @@ def read_humanoid(data: bytes, limits: Limits | None = None) -> ReadHumanoid:
         "names" if mapped is None else "vrm",
         binding,
         _rights(document),
-        contents_of(document, tables),
+        contents,
         posed.arms_turned_deg,
     )
 

@@ -1,7 +1,10 @@
 """Tests that files that are invalid or no humanoid raise an error with place and reason."""
 
+import base64
 import json
 import math
+import struct
+import tracemalloc
 from collections.abc import Callable
 from typing import Any
 
@@ -195,3 +198,79 @@ def test_limits_are_enforced() -> None:
         document["meshes"][0]["primitives"] *= 5_000
 
     assert "more" in str(rejected(humanoid_file(Model(edit=repeated))))
+
+
+def png(width: int, height: int) -> bytes:
+    """Return the beginning of a PNG file of that size."""
+    return b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR" + struct.pack(">II", width, height)
+
+
+def ktx2(unpacked: int, faces: int = 1, packing: int = 2) -> bytes:
+    """Return the beginning of a KTX2 file of 32 x 16 pixels whose one level has that length."""
+    head = struct.pack("<9I", 0, 1, 32, 16, 0, 0, faces, 1, packing)
+    return b"\xabKTX 20\xbb\r\n\x1a\n" + head + bytes(32) + struct.pack("<QQQ", 104, 1, unpacked)
+
+
+def with_pictures(*pictures: bytes) -> bytes:
+    """Return a model with these pictures in its JSON."""
+
+    def edit(document: dict[str, Any]) -> None:
+        uris = (base64.b64encode(one).decode() for one in pictures)
+        document["images"] = [{"uri": f"data:image/png;base64,{uri}"} for uri in uris]
+
+    return humanoid_file(Model(edit=edit))
+
+
+@pytest.mark.parametrize(
+    ("pictures", "place", "said"),
+    [
+        ([png(8192, 8193)], "images.0", "8,192 x 8,193 pixels; up to 8,192 a side"),
+        ([png(4, 4), png(2**31 - 1, 1)], "images.1", "up to 8,192 a side are valid"),
+        ([png(8192, 8192)] * 3, "images", "201,326,592 pixels together; up to 200,000,000"),
+        ([b""] * 1001, "images", "1001 pictures; up to 1000 are read"),
+        ([png(0, 16)], "images.0", "begins like image/png but states no size"),
+        ([b"\xff\xd8\xff" + b"\xe0\0\x02\xff" * 2000], "images.0", "image/jpeg but states no"),
+        ([b"GIF89a" + bytes(20)], "images.0", "is GIF; valid are PNG, JPEG, WebP and KTX2"),
+        ([bytes(4) + b"ftypavif" + bytes(20)], "images.0", "is AVIF or HEIF; valid are PNG"),
+        ([ktx2(2**40)], "images.0", "32 x 16 pixels unpacks to 1,099,511,627,776 bytes"),
+        ([ktx2(512, faces=6)], "images.0", "0 layers and 6 faces; valid is one"),
+    ],
+)
+def test_pictures_that_cannot_be_drawn_are_refused(
+    pictures: list[bytes], place: str, said: str
+) -> None:
+    """Pictures that are huge, damaged or of another kind are refused by their headers."""
+    data = with_pictures(*pictures)
+    error = rejected(data)
+    assert (error.place, said in error.reason) == (place, True), error.reason
+    assert read_humanoid(data, check_pictures=False).humanoid.parts
+
+
+def test_pictures_within_the_limits_are_read() -> None:
+    """Two pictures of the largest side are read, as is a KTX2 picture."""
+    read = read_humanoid(with_pictures(png(8192, 8192), png(8192, 8192), ktx2(512)))
+    assert [(one.width, one.problem) for one in read.contents.textures] == [
+        (8192, ""),
+        (8192, ""),
+        (32, ""),
+    ]
+
+
+def test_a_view_with_many_pictures_is_not_copied() -> None:
+    """A thousand pictures in one large view take memory once, not for each of them."""
+
+    def edit(document: dict[str, Any]) -> None:
+        document["bufferViews"].append({"buffer": 0, "byteOffset": 0, "byteLength": 4_000_000})
+        document["buffers"][0]["byteLength"] += 4_000_000
+        document["images"] = [{"bufferView": len(document["bufferViews"]) - 1}] * 1000
+
+    document, binary = taken_apart(humanoid_file(Model(edit=edit)))
+    data = glb(document, binary + bytes(4_000_000))
+    tracemalloc.start()
+    try:
+        read = read_humanoid(data)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert len(read.contents.textures) == 1000
+    assert most < 60_000_000

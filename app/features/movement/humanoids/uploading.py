@@ -17,6 +17,8 @@ from app.models import HumanoidRow
 from app.platform.access import Caller
 from app.platform.context import AppContext
 
+WITHIN_S = 60.0
+"""Time limit of reading a model; one of 32,000 vertices takes about a second."""
 _REMEDY = (
     "Correct the model in the program that made it, or export it again as glTF binary (.glb) or "
     "VRM; docs/avatar-configuration.md says what is read."
@@ -85,7 +87,7 @@ def _store_counts(
 async def _measured(context: AppContext, name: str, file: Uploaded) -> Measured:
     try:
         max_bytes = context.settings.max_capture_bytes
-        found = await context.part(CaptureQueue).run(measure, max_bytes, file.path)
+        found = await context.part(CaptureQueue).run_within(WITHIN_S, measure, max_bytes, file.path)
     except InvalidInput as error:
         # A limit was exceeded; the message for captures does not apply to models.
         raise InvalidInput(
