@@ -2,10 +2,12 @@
  * Generated poses to look at a body in: the T-pose, standing, and walking on the spot. They are
  * curves drawn by hand, not anybody's movement.
  */
+
+import { BODY } from "@shared/avatar/bodyJoints";
 import { multiply, type Quaternion } from "@shared/rotations";
 import type { PointMotion } from "@shared/stage/motion";
 import { type BodyBinding, numbersOf, Parts, type PoseSource } from "@shared/stage/skin/pose";
-import { AVATAR_MAP, BODY } from "../captures/bodyJoints";
+import { AVATAR_MAP } from "../captures/bodyJoints";
 
 export type ExamplePose = "rest" | "stand" | "walk";
 export const EXAMPLE_POSES: readonly ExamplePose[] = ["rest", "stand", "walk"];

@@ -2,6 +2,7 @@
 import { Button, Center, Loader, Title } from "@mantine/core";
 import type { JointMapView } from "@shared/api/captures";
 import { ApiError } from "@shared/api/request";
+import { BODY } from "@shared/avatar/bodyJoints";
 import { dateTime } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
@@ -11,7 +12,7 @@ import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
-import { BODY, GROUPS, type Group } from "./bodyJoints";
+import { GROUPS, type Group } from "./bodyJoints";
 import classes from "./JointMap.module.css";
 import { JointRow } from "./JointRow";
 import { type MapProblem, problemsOf, redo, replace, sameMap, undo } from "./jointMapEdit";

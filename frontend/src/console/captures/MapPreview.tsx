@@ -1,6 +1,7 @@
 /** The skeleton in 3-D and a drawing of the body, with the joint being edited marked in both. */
 import { Center, Loader } from "@mantine/core";
 import type { Capture } from "@shared/api/captures";
+import { BODY } from "@shared/avatar/bodyJoints";
 import { type Figure, LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
 import { Stage } from "@shared/stage/Stage";
 import { seconds } from "@shared/units";
@@ -8,7 +9,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useMemo } from "react";
 import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
-import { BODY, placeOnBody, rolesFrom } from "./bodyJoints";
+import { placeOnBody, rolesFrom } from "./bodyJoints";
 import classes from "./JointMap.module.css";
 import type { BodyMap, MapProblem } from "./jointMapEdit";
 import { motionQuery } from "./queries";

@@ -2,33 +2,8 @@
  * The 22 joints of a human body (Unity's HumanBodyBones), their groups, and where they are on a
  * drawing.
  */
+import { BODY } from "@shared/avatar/bodyJoints";
 import type { BodyRoles } from "@shared/stage/figure";
-
-/** The parent of each joint, as in app/science/skeleton. */
-export const BODY: Readonly<Record<string, string | null>> = {
-  Hips: null,
-  Spine: "Hips",
-  Chest: "Spine",
-  UpperChest: "Chest",
-  Neck: "UpperChest",
-  Head: "Neck",
-  LeftShoulder: "UpperChest",
-  LeftUpperArm: "LeftShoulder",
-  LeftLowerArm: "LeftUpperArm",
-  LeftHand: "LeftLowerArm",
-  RightShoulder: "UpperChest",
-  RightUpperArm: "RightShoulder",
-  RightLowerArm: "RightUpperArm",
-  RightHand: "RightLowerArm",
-  LeftUpperLeg: "Hips",
-  LeftLowerLeg: "LeftUpperLeg",
-  LeftFoot: "LeftLowerLeg",
-  LeftToes: "LeftFoot",
-  RightUpperLeg: "Hips",
-  RightLowerLeg: "RightUpperLeg",
-  RightFoot: "RightLowerLeg",
-  RightToes: "RightFoot",
-};
 
 export type Group = "trunk" | "leftArm" | "rightArm" | "leftLeg" | "rightLeg";
 

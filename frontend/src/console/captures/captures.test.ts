@@ -1,8 +1,9 @@
 import { readFileSync } from "node:fs";
 import { uploadUrl } from "@shared/api/captures";
+import { BODY } from "@shared/avatar/bodyJoints";
 import { describe, expect, it } from "vitest";
 import { avatarOf, withAvatar } from "./avatars";
-import { BODY, GROUPS, placeOnBody, rolesFrom } from "./bodyJoints";
+import { GROUPS, placeOnBody, rolesFrom } from "./bodyJoints";
 import { assign, begin, problemsOf, redo, replace, sameMap, undo } from "./jointMapEdit";
 import { missingCompanion, pairFiles } from "./useUploads";
 

@@ -1,9 +1,10 @@
 /** The current error of each joint: a small body, and the largest errors by name. */
 import type { JointErrors } from "@shared/api/replays";
+import { BODY } from "@shared/avatar/bodyJoints";
 import { decimals } from "@shared/format";
 import type { Seconds } from "@shared/units";
 import type { JSX } from "react";
-import { BODY, placeOnBody } from "../captures/bodyJoints";
+import { placeOnBody } from "../captures/bodyJoints";
 import { FULL_SCALE_DEG } from "../cockpit/live3d/heat";
 import { useTexts } from "../i18n";
 import classes from "./Replay.module.css";

@@ -118,7 +118,7 @@ export class Parts {
   }
 
   /** Place the parts; leave them where they are and return false if the pose is not fully known. */
-  place(values: Float32Array): boolean {
+  place(values: ArrayLike<number>): boolean {
     const joints = this.#jointRotations.length / 4;
     if (!isKnown(values, joints)) return false;
     for (let joint = 0; joint < joints; joint++) {
@@ -129,7 +129,7 @@ export class Parts {
     return true;
   }
 
-  #placePart(part: number, values: Float32Array): void {
+  #placePart(part: number, values: ArrayLike<number>): void {
     const { places, rotations } = this;
     const parent = this.#parents[part] ?? -1;
     const joint = this.#jointOf[part] ?? -1;
@@ -159,7 +159,7 @@ export class Parts {
 }
 
 /** Whether every number is known and no rotation is missing. */
-function isKnown(values: Float32Array, joints: number): boolean {
+function isKnown(values: ArrayLike<number>, joints: number): boolean {
   for (let axis = 0; axis < 3; axis++) if (!Number.isFinite(values[axis])) return false;
   for (let at = 3; at < 3 + 4 * joints; at += 4) {
     const w = values[at] ?? 0;
@@ -176,7 +176,7 @@ function isKnown(values: Float32Array, joints: number): boolean {
 function turn(
   above: Float64Array,
   parent: number,
-  local: Float32Array,
+  local: ArrayLike<number>,
   at: number,
   into: Float64Array,
   index: number,

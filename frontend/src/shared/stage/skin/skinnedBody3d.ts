@@ -3,18 +3,13 @@
  * anything, with a shadow on the floor. This module imports three.js.
  */
 import {
-  Bone,
   type ColorRepresentation,
-  DetachedBindMode,
   Group,
   type Material,
-  Matrix4,
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
   type MeshStandardMaterial,
-  Skeleton,
-  SkinnedMesh,
   Sphere,
   Vector3,
 } from "three";
@@ -22,12 +17,12 @@ import type { Seconds } from "../../units";
 import type { Figure, StagePalette } from "../figure";
 import { type Placing, placing } from "../placing";
 import type { BodyMesh } from "./bodyModel";
-import { numbersOf, Parts } from "./pose";
+import { BodyBones, skinned } from "./bones";
+import { numbersOf } from "./pose";
 import { Tints } from "./tint";
 import type { Worn } from "./worn";
 
 const GHOST_OPACITY = 0.42;
-const IDENTITY = new Matrix4();
 
 export class SkinnedBody3d {
   readonly group = new Group();
@@ -36,12 +31,8 @@ export class SkinnedBody3d {
   headless = false;
   readonly #worn: Worn;
   readonly #meshes = new Group();
-  readonly #parts: Parts;
   readonly #values: Float32Array;
-  readonly #bones: readonly Bone[];
-  /** By part: the node's place in its part, in the wearer's size. */
-  readonly #partFromNode: readonly Matrix4[];
-  readonly #skeletons: readonly Skeleton[];
+  readonly #bones: BodyBones;
   readonly #drawn: readonly Drawn[];
   readonly #materials = new Set<Material>();
   readonly #tints: Tints;
@@ -59,16 +50,9 @@ export class SkinnedBody3d {
     const { binding } = model;
     this.#worn = worn;
     this.placing = placing(figure);
-    const scale = statureM / binding.stature_m;
-    this.#parts = new Parts(binding, scale, pose);
     this.#values = new Float32Array(numbersOf(pose.joints)).fill(Number.NaN);
-    this.#bones = model.nodes.map(() => new Bone());
-    this.#partFromNode = binding.part_from_node.map((rows) => scaled(rows, scale));
+    this.#bones = new BodyBones(model, statureM, pose);
     this.#tints = new Tints(binding.parts.length);
-    this.#skeletons = model.skins.map(({ joints, inverses }) => {
-      const bones = joints.map((joint) => this.#bones[joint] as Bone);
-      return new Skeleton(bones, inverses);
-    });
     const isGhost = figure.tone === "ghost";
     const dress = isGhost ? ghostly(palette, this.#materials) : this.#own();
     this.#drawn = model.meshes.map((mesh) => {
@@ -89,7 +73,7 @@ export class SkinnedBody3d {
     const [x, z] = this.figure.offset ?? NOT_MOVED;
     this.#values[0] = (this.#values[0] ?? 0) + x;
     this.#values[2] = (this.#values[2] ?? 0) + z;
-    if (this.#parts.place(this.#values)) this.#moved();
+    if (this.#bones.place(this.#values)) this.#moved();
     if (this.#isHeadless !== this.headless) this.#turnHeadless();
     return frame;
   }
@@ -111,14 +95,14 @@ export class SkinnedBody3d {
 
   dispose(): void {
     // Geometries and textures belong to the model, which others may wear.
-    for (const skeleton of this.#skeletons) skeleton.dispose();
+    this.#bones.dispose();
     for (const material of this.#materials) material.dispose();
   }
 
   #moved(): void {
     this.#meshes.visible = true;
-    this.#placeNodes();
-    const { places } = this.#parts;
+    this.#placeRigid();
+    const { places } = this.#bones.parts;
     this.#middle.center.set(places[0] ?? 0, places[1] ?? 0, places[2] ?? 0);
     const { placed, seen } = this.placing;
     for (let point = 0; point < this.#partOfPoint.length; point++) {
@@ -130,30 +114,16 @@ export class SkinnedBody3d {
     }
   }
 
-  #placeNodes(): void {
-    const { nodes } = this.#worn.model;
-    const { places, rotations } = this.#parts;
-    for (let index = 0; index < nodes.length; index++) {
-      const node = nodes[index];
-      const world = this.#bones[index]?.matrixWorld;
-      if (node === undefined || world === undefined) continue;
-      const { part, parent } = node;
-      if (part < 0) {
-        world.multiplyMatrices(this.#bones[parent]?.matrixWorld ?? IDENTITY, node.local);
-        continue;
-      }
-      setPose(world, places, 3 * part, rotations, 4 * part);
-      world.multiply(this.#partFromNode[part] ?? IDENTITY);
-    }
+  #placeRigid(): void {
     for (let at = 0; at < this.#drawn.length; at++) {
       const one = this.#drawn[at];
       if (one === undefined || one.source.skin >= 0) continue;
-      one.made.matrixWorld.copy(this.#bones[one.source.node]?.matrixWorld ?? IDENTITY);
+      one.made.matrixWorld.copy(this.#bones.nodeWorld(one.source.node));
     }
   }
 
   #make(mesh: BodyMesh, material: Material | Material[]): Mesh {
-    const skeleton = this.#skeletons[mesh.skin];
+    const skeleton = this.#bones.skeletons[mesh.skin];
     const made =
       skeleton === undefined
         ? new Mesh(mesh.geometry, material)
@@ -187,7 +157,7 @@ export class SkinnedBody3d {
     const material = new MeshBasicMaterial({ color: palette.shadow });
     this.#materials.add(material);
     for (const { skin, geometry, view } of this.#worn.model.meshes) {
-      const skeleton = this.#skeletons[skin];
+      const skeleton = this.#bones.skeletons[skin];
       if (skeleton === undefined || view === "firstPersonOnly") continue;
       const shadow = skinned(geometry, material, skeleton, this.#middle);
       shadow.matrix.makeScale(1, 0, 1).setPosition(0, 0.001, 0);
@@ -220,22 +190,6 @@ const NOT_MOVED = [0, 0] as const;
 const isList = (material: BodyMesh["material"]): material is readonly Material[] =>
   Array.isArray(material);
 
-function skinned(
-  geometry: BodyMesh["geometry"],
-  material: Material | Material[],
-  skeleton: Skeleton,
-  middle: Sphere,
-): SkinnedMesh {
-  const mesh = new SkinnedMesh(geometry, material);
-  mesh.bind(skeleton, IDENTITY);
-  // Bones are placed in the world, wherever the mesh is.
-  mesh.bindMode = DetachedBindMode;
-  // The figure moves all the time, and drawing what is out of view is cheap.
-  mesh.frustumCulled = false;
-  mesh.boundingSphere = middle;
-  return mesh;
-}
-
 /** One translucent grey; what is cut out of a texture, such as hair, stays cut out. */
 function ghostly(palette: StagePalette, made: Set<Material>) {
   const plain = ghostMaterial(palette, made);
@@ -261,36 +215,4 @@ function ghostMaterial(palette: StagePalette, made: Set<Material>): MeshLambertM
   });
   made.add(material);
   return material;
-}
-
-/** A matrix from 16 numbers row by row, for a body of another size. */
-function scaled(rows: readonly number[], by: number): Matrix4 {
-  const matrix = new Matrix4().fromArray([...rows]).transpose();
-  const { elements } = matrix;
-  for (let column = 0; column < 4; column++) {
-    for (let row = 0; row < 3; row++)
-      elements[4 * column + row] = (elements[4 * column + row] ?? 0) * by;
-  }
-  return matrix;
-}
-
-/** Set a matrix to a place and a rotation, which are at these indices. */
-function setPose(
-  matrix: Matrix4,
-  places: Float64Array,
-  place: number,
-  rotations: Float64Array,
-  rotation: number,
-): void {
-  const w = rotations[rotation] ?? 1;
-  const x = rotations[rotation + 1] ?? 0;
-  const y = rotations[rotation + 2] ?? 0;
-  const z = rotations[rotation + 3] ?? 0;
-  // biome-ignore format: as a matrix is written
-  matrix.set(
-    1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), places[place] ?? 0,
-    2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), places[place + 1] ?? 0,
-    2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), places[place + 2] ?? 0,
-    0, 0, 0, 1,
-  );
 }

@@ -1,0 +1,63 @@
+/** Read a body from the bytes of its model's file. This module imports three.js. */
+import { TextureLoader } from "three";
+import { GLTFLoader, type GLTFParser } from "three/addons/loaders/GLTFLoader.js";
+import type { BodyModel } from "./bodyModel";
+import { makeDecoders } from "./decoders";
+import { bodyOfGltf } from "./gltfBody";
+import type { BodyBinding } from "./pose";
+
+/** Read a model's file: glTF in one file, or VRM 0 or 1, whose materials are kept. */
+export async function readBody(file: ArrayBuffer, binding: BodyBinding): Promise<BodyModel> {
+  const decoders = makeDecoders();
+  try {
+    const loader = new GLTFLoader(decoders.manager)
+      .setDRACOLoader(decoders.draco)
+      .setKTX2Loader(decoders.ktx2)
+      .setMeshoptDecoder(decoders.meshopt as never);
+    loader.register((parser) => {
+      keepToFile(parser);
+      return { name: "REEMBODY_one_file" };
+    });
+    if (namesVrm(file)) {
+      const { VRMLoaderPlugin } = await import("@pixiv/three-vrm");
+      loader.register((parser) => new VRMLoaderPlugin(parser));
+    }
+    return bodyOfGltf(await loader.parseAsync(file, ""), binding);
+  } finally {
+    decoders.dispose();
+  }
+}
+
+/** Load nothing from other addresses, and images only as elements, as the page's policy allows. */
+function keepToFile(parser: GLTFParser): void {
+  const own = parser as unknown as {
+    textureLoader: TextureLoader;
+    fileLoader: { load: (...all: FileLoaderArguments) => void };
+  };
+  own.textureLoader = new TextureLoader(parser.options.manager);
+  own.fileLoader = Object.assign(parser.fileLoader, {
+    load: (url: string, onLoad: (data: ArrayBuffer) => void, _: unknown, onError: () => void) => {
+      const data = /^data:[^,]*;base64,/.exec(url);
+      if (data === null) return onError();
+      const bytes = Uint8Array.from(atob(url.slice(data[0].length)), (one) => one.charCodeAt(0));
+      onLoad(bytes.buffer);
+    },
+  }) as typeof own.fileLoader;
+}
+
+type FileLoaderArguments = [
+  url: string,
+  onLoad: (data: ArrayBuffer) => void,
+  onProgress: unknown,
+  onError: () => void,
+];
+
+/** Whether the file's description names an extension of VRM, in which case its plugin is needed. */
+function namesVrm(file: ArrayBuffer): boolean {
+  const view = new DataView(file);
+  const isBinary = file.byteLength >= 20 && view.getUint32(0, true) === GLB_MAGIC;
+  const text = isBinary ? new Uint8Array(file, 20, view.getUint32(12, true)) : new Uint8Array(file);
+  return /"VRM(C_\w+)?"/.test(new TextDecoder().decode(text));
+}
+
+const GLB_MAGIC = 0x46546c67;

@@ -1,0 +1,283 @@
+/**
+ * What the participant sees: a plain room with a mirror, bodies, and the boxes of the tasks.
+ *
+ * The session builds one `World` from the study's tasks and appearance, puts bodies into it as they
+ * are loaded, and calls `show` once a frame with everything that is to be seen; then it renders
+ * `scene` with its own renderer and camera. The world decides nothing about the study.
+ *
+ * An eye's pass takes at most 20 draw calls and never changes the render target. What is reflected
+ * stands behind the glass (`mirror.ts`). This module imports three.js.
+ */
+import type { Place } from "@shared/avatar/hips";
+import type { BodyModel } from "@shared/stage/skin/bodyModel";
+import { Color, Group, Scene } from "three";
+import type { Palette } from "./appearance";
+import { Board, boardWords } from "./board";
+import { type Body3d, type Look, PlainBody, SkinnedBody } from "./bodies3d";
+import {
+  areaOf,
+  type BoundaryProblem,
+  boundaryLine,
+  boundaryProblem,
+  type FloorPoint,
+} from "./boundary";
+import { Curtain, PANELS_ORDER } from "./curtain";
+import { type Device, Devices } from "./devices";
+import { makeLights } from "./lights";
+import { type Mirror, mirrorBehind } from "./mirror";
+import { makeRoom } from "./room";
+import { type Limb, type Setup, Setups, type TaskShown } from "./setups";
+import { Shadows } from "./shadows";
+import { tPose } from "./skeleton";
+import { Sounds } from "./sounds";
+
+export interface WorldOptions {
+  /** The layouts of the study's tasks. */
+  readonly layouts: ReadonlyMap<Limb, Setup>;
+  readonly palette: Palette;
+  /** Of the participant, for the words at the mirror. */
+  readonly language: string;
+  /** False leaves out what stands behind the glass, for comparisons with other mirrors. */
+  readonly hasDouble?: boolean;
+}
+
+/** Both bodies' values in one frame, as in `bodies/bodies.ts`. */
+export interface BodyValues {
+  readonly local: ArrayLike<number>;
+  readonly remote: ArrayLike<number>;
+  readonly localFingers: ArrayLike<number> | null;
+  readonly remoteFingers: ArrayLike<number> | null;
+}
+
+/** What exists for the participant now. */
+export interface Visible {
+  /** The body that shows what the tracking says; translucent beside the remote one. */
+  readonly local: boolean;
+  /** The body that the participant acts with. */
+  readonly remote: boolean;
+  /** The transparent figure in T-pose on the start square, to step into. */
+  readonly figure: boolean;
+  /** Controllers, hands and trackers, before there is a body. */
+  readonly devices: boolean;
+  /** The boxes of these limbs; in free movement those of both. */
+  readonly setups: readonly Limb[];
+}
+
+/** Everything about one frame. The world keeps no reference to it. */
+export interface WorldFrame {
+  readonly timeS: number;
+  /** The participant's eyes; null while the headset has lost its place. */
+  readonly eyes: Place | null;
+  readonly bodies: BodyValues | null;
+  readonly visible: Visible;
+  readonly devices: readonly Device[];
+  /** The running task; null outside of tasks, when boxes look as before the start. */
+  readonly task: TaskShown | null;
+  /** Shown at the mirror; null: not shown. */
+  readonly remainingS: number | null;
+  readonly completed: number | null;
+  /** Bodies stay as they are; the view never does. */
+  readonly isFrozen: boolean;
+  /** Hide the room within 200 ms, or show it again. Panels stay visible. */
+  readonly isCurtainDrawn: boolean;
+}
+
+export class World {
+  readonly scene = new Scene();
+  /**
+   * For the surfaces of panels: not reflected, and in front of the curtain if their materials are
+   * `transparent` (three.js draws others earlier).
+   */
+  readonly panels = new Group();
+  readonly mirror: Mirror;
+  readonly sounds = new Sounds();
+  readonly #reflecting: Mirror | null;
+  readonly #setups: Setups;
+  readonly #board: Board;
+  readonly #shadows: Shadows;
+  readonly #devices: Devices;
+  readonly #curtain = new Curtain();
+  readonly #area;
+  readonly #line;
+  readonly #room;
+  readonly #models = new Map<string | null, BodyModel>();
+  readonly #bodies = new Map<Slot, Body3d>();
+  #worn: string | null = null;
+  #statureM = 1.7;
+  #greenBefore = 0;
+  #completedBefore: number | null = null;
+  #wasFrozen = false;
+
+  constructor({ layouts, palette, language, hasDouble = true }: WorldOptions) {
+    this.#area = areaOf(layouts.values());
+    const nearest = [...layouts.values()].flatMap(({ surfaces }) =>
+      surfaces.map(({ centerM, halfSizeM }) => centerM[2] - halfSizeM[2]),
+    );
+    this.mirror = mirrorBehind(Math.min(0, ...nearest));
+    this.#reflecting = hasDouble ? this.mirror : null;
+    this.#room = makeRoom(this.mirror, hasDouble);
+    this.#setups = new Setups(layouts, palette, this.#reflecting);
+    this.#board = new Board(this.mirror, boardWords(language));
+    this.#shadows = new Shadows(this.#reflecting);
+    this.#devices = new Devices(this.#reflecting);
+    this.#line = boundaryLine(this.#area);
+    this.#line.visible = false;
+    this.panels.renderOrder = PANELS_ORDER;
+    this.scene.background = new Color("#d8d7d2");
+    this.scene.add(makeLights(), this.#room, this.#setups.mesh, this.#shadows.mesh);
+    this.scene.add(
+      this.#board.mesh,
+      this.#devices.group,
+      this.#line,
+      this.#curtain.mesh,
+      this.panels,
+    );
+  }
+
+  /** Keep a body's model under its name (null: the configuration's), to be worn later. */
+  addBody(name: string | null, model: BodyModel): void {
+    this.#models.set(name, model);
+    if (name === this.#worn) this.#clearBodies();
+  }
+
+  /**
+   * Let both bodies and the figure be this body, at the participant's stature. Until its model has
+   * been added, a plain one of capsules is shown.
+   */
+  wear(name: string | null, statureM: number): void {
+    if (name === this.#worn && statureM === this.#statureM) return;
+    this.#worn = name;
+    this.#statureM = statureM;
+    this.#clearBodies();
+  }
+
+  /** Check the guarded space, and show the line of what is needed if it does not suffice. */
+  checkBoundary(bounds: readonly FloorPoint[] | null): BoundaryProblem {
+    const problem = boundaryProblem(bounds, this.#area);
+    this.#line.visible = problem !== null;
+    return problem;
+  }
+
+  /** Hide the line again, once somebody has decided to go on. */
+  hideBoundary(): void {
+    this.#line.visible = false;
+  }
+
+  show(frame: WorldFrame): void {
+    const { visible, task } = frame;
+    this.#showBodies(frame);
+    this.#devices.show(visible.devices ? frame.devices : NO_DEVICES);
+    this.#setups.show(visible.setups, task);
+    this.#board.show(frame.remainingS, frame.completed);
+    const beyond = frame.eyes === null ? 0 : this.#nearness(frame.eyes.positionM[2]);
+    this.#curtain.show(frame.timeS, frame.isCurtainDrawn, beyond);
+    this.#sound(frame);
+    this.#wasFrozen = frame.isFrozen;
+  }
+
+  dispose(): void {
+    this.#clearBodies();
+    this.#setups.dispose();
+    this.#board.dispose();
+    this.#shadows.dispose();
+    this.#devices.dispose();
+    this.#curtain.dispose();
+    this.#line.geometry.dispose();
+    this.#room.geometry.dispose();
+    this.#room.material.map?.dispose();
+    this.#room.material.dispose();
+    this.sounds.dispose();
+  }
+
+  #showBodies({ bodies, visible, isFrozen, eyes }: WorldFrame): void {
+    const isBoth = visible.local && visible.remote;
+    this.#pose("remote", visible.remote, bodies?.remote, bodies?.remoteFingers, isFrozen);
+    this.#pose("local", visible.local && !isBoth, bodies?.local, bodies?.localFingers, isFrozen);
+    this.#pose("beside", isBoth, bodies?.local, bodies?.localFingers, isFrozen);
+    this.#showFigure(visible.figure, eyes);
+    const standing = visible.remote ? "remote" : visible.local ? "local" : "figure";
+    const body = this.#bodies.get(standing) ?? null;
+    this.#shadows.show(body?.group.visible === true ? body : null);
+  }
+
+  #pose(
+    slot: Slot,
+    isVisible: boolean,
+    pose: ArrayLike<number> | undefined,
+    fingers: ArrayLike<number> | null | undefined,
+    isFrozen: boolean,
+  ): void {
+    if (!isVisible || pose === undefined) {
+      const hidden = this.#bodies.get(slot);
+      if (hidden !== undefined) hidden.group.visible = false;
+      return;
+    }
+    const body = this.#body(slot);
+    if (isFrozen && body.group.visible) return;
+    body.move(pose, fingers ?? null);
+  }
+
+  #showFigure(isVisible: boolean, eyes: Place | null): void {
+    const known = this.#bodies.get("figure");
+    if (!isVisible) {
+      if (known !== undefined) known.group.visible = false;
+      return;
+    }
+    const figure = this.#body("figure");
+    if (!figure.group.visible) figure.move(tPose(figure.hipsHeightM), null);
+    // Whoever has stepped into it sees out of it.
+    const [x = 0, , z = 0] = eyes?.positionM ?? [9, 9, 9];
+    figure.setSeenFromWithin(Math.hypot(x, z) < INSIDE_M);
+  }
+
+  #body(slot: Slot): Body3d {
+    const known = this.#bodies.get(slot);
+    if (known !== undefined) return known;
+    const look: Look = slot === "remote" || slot === "local" ? "own" : "transparent";
+    const model = this.#models.get(this.#worn);
+    const body =
+      model === undefined
+        ? new PlainBody(this.#statureM, look, this.#reflecting)
+        : new SkinnedBody(model, this.#statureM, look, this.#reflecting);
+    body.setSeenFromWithin(slot !== "figure");
+    this.#bodies.set(slot, body);
+    this.scene.add(body.group);
+    return body;
+  }
+
+  #clearBodies(): void {
+    for (const body of this.#bodies.values()) {
+      this.scene.remove(body.group);
+      body.dispose();
+    }
+    this.#bodies.clear();
+  }
+
+  /** How far the eyes have come towards the glass, through which nobody may look at its back. */
+  #nearness(eyesZM: number): number {
+    const distance = eyesZM - this.mirror.planeZM;
+    return Math.min(1, Math.max(0, 1 - (distance - GLASS_M) / GLASS_M));
+  }
+
+  #sound({ task, completed, isFrozen }: WorldFrame): void {
+    let green = 0;
+    for (const colour of task?.colours.values() ?? []) if (colour === "green") green++;
+    const before = this.#completedBefore;
+    if (before !== null && completed !== null && completed > before) this.sounds.play("complete");
+    else if (task !== null && green > this.#greenBefore && this.#greenBefore > 0) {
+      this.sounds.play("touch");
+    }
+    if (isFrozen && !this.#wasFrozen && task !== null) this.sounds.play("time_up");
+    this.#greenBefore = green;
+    this.#completedBefore = completed;
+  }
+}
+
+/** `beside`: the local body while the remote one is there, too. */
+type Slot = "local" | "remote" | "beside" | "figure";
+
+const NO_DEVICES: readonly Device[] = [];
+/** Nearer to the figure's middle than this, one stands in it, metres. */
+const INSIDE_M = 0.28;
+/** The curtain begins to close at twice this distance from the glass, metres. */
+const GLASS_M = 0.12;
