@@ -2,13 +2,7 @@ import { readdirSync, readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { describe, expect, it } from "vitest";
 import { CapsuleContacts, segmentBoxDistanceM } from "./contacts";
-import {
-  type BlockSpec,
-  buildLayout,
-  type Laterality,
-  type LayoutSpec,
-  type TaskLayout,
-} from "./layout";
+import type { Laterality, TaskLayout } from "./layout";
 import { completionsOf, TaskRun } from "./run";
 import {
   type Command,
@@ -19,6 +13,7 @@ import {
   TaskRules,
   type TaskState,
 } from "./state";
+import { layoutVectors, readLayouts } from "./testing/layouts";
 import type { ContactInterval } from "./tracker";
 import { currentGoal, displayedNumbers, surfaceColours } from "./views";
 
@@ -27,27 +22,6 @@ const FOLDER = resolve(import.meta.dirname, "../../../../tests/vectors/tasks");
 
 type Row = readonly [number, number, number];
 type Pair = readonly [string, string];
-interface Block {
-  readonly center_m: Row;
-  readonly size_m: Row;
-}
-interface LayoutVector extends Pick<LayoutSpec, "limb" | "sides" | "direction"> {
-  readonly boxes: readonly { number: number; center_m: Row; inner_size_m: Row }[];
-  readonly target: Block;
-  readonly start_square: Block | null;
-  readonly wall_thickness_m: number;
-  readonly panel_thickness_m: number;
-  readonly counting_foot: Laterality | null;
-  readonly reverse_after_task: boolean;
-  readonly surfaces: readonly {
-    readonly key: string;
-    readonly kind: string;
-    readonly box: number | null;
-    readonly side: string | null;
-    readonly center_m: Row;
-    readonly half_size_m: Row;
-  }[];
-}
 interface Input {
   readonly time_s: number;
   readonly command?: CommandKind;
@@ -124,7 +98,6 @@ interface TouchesVector {
 interface LayoutsVector {
   readonly kind: "layouts";
   readonly name: string;
-  readonly layouts: Readonly<Record<string, LayoutVector>>;
 }
 type Vector = RulesVector | FramesVector | DistancesVector | TouchesVector | LayoutsVector;
 type Kind = Vector["kind"];
@@ -135,31 +108,8 @@ const vectors: readonly Vector[] = readdirSync(FOLDER)
 const ofKind = <K extends Kind>(kind: K) =>
   vectors.filter((vector): vector is Extract<Vector, { kind: K }> => vector.kind === kind);
 
-const layouts = Object.assign({}, ...ofKind("layouts").map((one) => one.layouts)) as Readonly<
-  Record<string, LayoutVector>
->;
-const layoutOf = (name: string): TaskLayout => built(layouts[name] as LayoutVector);
-
-const blockOf = ({ center_m, size_m }: Block): BlockSpec => ({ centerM: center_m, sizeM: size_m });
-
-function built(vector: LayoutVector): TaskLayout {
-  return buildLayout({
-    limb: vector.limb,
-    boxes: vector.boxes.map(({ number, center_m, inner_size_m }) => ({
-      number,
-      centerM: center_m,
-      innerSizeM: inner_size_m,
-    })),
-    target: blockOf(vector.target),
-    startSquare: vector.start_square && blockOf(vector.start_square),
-    wallThicknessM: vector.wall_thickness_m,
-    panelThicknessM: vector.panel_thickness_m,
-    sides: vector.sides,
-    countingFoot: vector.counting_foot,
-    direction: vector.direction,
-    reverseAfterTask: vector.reverse_after_task,
-  });
-}
+const layouts = readLayouts();
+const layoutOf = (name: string): TaskLayout => layouts.get(name) as TaskLayout;
 
 function stepOf(input: Input): Command | ContactChange {
   const { time_s: timeS, command, begins = [], ends = [] } = input;
@@ -283,8 +233,8 @@ describe.each(ofKind("rules"))("the rules in $name", (vector) => {
   });
 });
 
-it.each(Object.entries(layouts))("the layout %s has the surfaces in order", (_, vector) => {
-  const { surfaces } = built(vector);
+it.each(layoutVectors())("the layout %s has the surfaces in order", (name, vector) => {
+  const { surfaces } = layoutOf(name);
   const words = ({ key, kind, box, side }: { [name: string]: unknown }) => [key, kind, box, side];
   expect(surfaces.map((one) => words({ ...one }))).toEqual(vector.surfaces.map(words));
   surfaces.forEach(({ centerM, halfSizeM }, index) => {
