@@ -68,6 +68,7 @@ class Assets(StaticFiles):
 
 def _policy(path: str) -> dict[str, str]:
     """Return the policy of a worker for WebAssembly; nothing for any other file."""
+    path = path.replace("\\", "/")  # Starlette gives paths with the system's separators.
     if not path.startswith(WASM_WORKERS):
         return {}
     more = " 'unsafe-eval'" if path.startswith(TEXTURE_WORKER) else ""

@@ -64,4 +64,8 @@ def test_only_the_workers_for_webassembly_may_run_it(client: TestClient, tmp_pat
     (tmp_path / "wasm" / "textureWorker-1.js").write_text("1;\n")
     policy = client.get("/assets/wasm/textureWorker-1.js").headers["content-security-policy"]
     assert policy == f"{WASM_POLICY} 'unsafe-eval'"
+    # On Windows, the file's path has backslashes; here they are part of its name.
+    (tmp_path / "wasm\\textureWorker-2.js").write_text("1;\n")
+    windows = client.get("/assets/wasm%5CtextureWorker-2.js")
+    assert (windows.status_code, windows.headers["content-security-policy"]) == (200, policy)
     assert "content-security-policy" not in client.get("/assets/page.js").headers
