@@ -2,7 +2,8 @@
 
 The console answers every pose of a body that it has drawn, with any message. At most `MAX_UNDRAWN`
 poses are in flight: a slow console gets fewer poses but always the latest, regardless of how much
-the network and the browser would buffer.
+the network and the browser would buffer. Poses of fingers are not answered. They come with those of
+a body, so at most as many follow the last answer; further ones are left out.
 """
 
 import asyncio
@@ -62,6 +63,7 @@ class _Viewer:
     _sent_setup: Setup | None = None
     _checked_s: float = float("-inf")
     _undrawn: int = 0
+    _fingers: int = 0
     _drawn: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def run(self) -> None:
@@ -83,6 +85,7 @@ class _Viewer:
             if received["type"] == "websocket.disconnect":
                 raise WebSocketDisconnect(received.get("code", 1005))
             self._undrawn = max(0, self._undrawn - 1)
+            self._fingers = 0
             self._drawn.set()
 
     async def _send(self) -> None:
@@ -117,7 +120,12 @@ class _Viewer:
         blinded = self._sent_setup is None or self._sent_setup.blinded
         for message in visible(messages, blinded=blinded):
             if isinstance(message, bytes):
-                self._undrawn += _is_body(message)
+                if _is_body(message):
+                    self._undrawn += 1
+                elif self._fingers < MAX_UNDRAWN:
+                    self._fingers += 1
+                else:
+                    continue
                 await self.socket.send_bytes(message)
             else:
                 await self.socket.send_text(message.model_dump_json())
@@ -129,7 +137,7 @@ class _Viewer:
 
 
 def _is_body(message: bytes) -> bool:
-    """Return whether a pose is that of a body. Poses of fingers come with it, uncounted."""
+    """Return whether a pose is that of a body, and not of its fingers."""
     return message[_STREAM_BYTE] <= CODE_OF_STREAM[StreamName.ACTUAL]
 
 

@@ -15,11 +15,11 @@ from app.features.record.headset.poses import HEADER, PoseFeed
 from app.features.record.poses.endpoints import MAX_UNDRAWN
 from app.models import StudySession
 from app.science.skeleton import JOINT_NAMES, build_skeleton
-from app.wire import Batch, StreamName, decode_batch
+from app.wire import FINGER_STREAMS, Batch, StreamName, decode_batch
 from tests.features.builders import as_physics
 from tests.features.lab import STUDY, Json, Lab, ok
 from tests.features.record.poses.test_feed import contact
-from tests.wire.samples import message, standing
+from tests.wire.samples import message, resting_fingers, standing
 
 PATIENCE_S = 10.0
 
@@ -42,7 +42,8 @@ def feed_of(lab: Lab, session_id: str) -> PoseFeed:
 
 def batch(seq: int, stream: StreamName = StreamName.TARGET) -> Batch:
     """Return a batch of one frame."""
-    return decode_batch(message(standing(1), stream=stream, seq_first=seq))
+    values = resting_fingers(1) if stream in FINGER_STREAMS else standing(1)
+    return decode_batch(message(values, stream=stream, seq_first=seq))
 
 
 def seq_of(pose: bytes) -> int:
@@ -147,6 +148,34 @@ def test_a_console_that_stops_drawing_resumes_with_the_newest_frame(lab: Lab) ->
         for _ in range(last):
             socket.send_text("")
         assert seq_of(socket.receive_bytes()) == 199
+
+
+@pytest.mark.one_engine
+def test_fingers_without_a_body_do_not_pile_up(lab: Lab) -> None:
+    """A console that answers nothing gets a few poses of fingers; the next body comes all the same.
+
+    Fingers follow again once that body has been drawn.
+    """
+    fingers = StreamName.TARGET_FINGERS
+    session_id = lab.join()["id"]
+    with watching(lab, session_id) as socket:
+        socket.receive_json()
+        feed = feed_of(lab, session_id)
+        for seq in range(MAX_UNDRAWN):
+            feed.take(batch(seq, fingers), float(seq))
+            assert seq_of(socket.receive_bytes()) == seq
+        for seq in range(MAX_UNDRAWN, 60):
+            feed.take(batch(seq, fingers), float(seq))
+        for seq in (60, 61, 62):
+            feed.take(batch(seq), float(seq))
+            assert seq_of(socket.receive_bytes()) == seq
+        # The next ones wait for an answer each, so they show that it has been received.
+        feed.take(batch(63), 63.0)
+        socket.send_text("")
+        assert seq_of(socket.receive_bytes()) == 63
+        feed.take(batch(64, fingers), 64.0)
+        socket.send_text("")
+        assert seq_of(socket.receive_bytes()) == 64
 
 
 @pytest.mark.one_engine
