@@ -165,6 +165,7 @@ const PART = {
 export class FakeSource implements TrackingSource {
   readonly kind = "controllers";
   readonly measures = new Set(["Head", "LeftHand", "RightHand"] as const);
+  readonly knownBody = null;
   areGripsPressed = false;
 
   read(timeS: number): TrackedFrame {

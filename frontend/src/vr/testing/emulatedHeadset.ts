@@ -91,9 +91,14 @@ export class EmulatedHeadset {
   /** Place a controller by its grip; its ray starts there and follows from the device's model. */
   setController(side: Side, grip: Place): void {
     const controller = this.controller(side);
-    const offset = controller.inputSource.gripSpace?.[P_SPACE].offsetMatrix;
-    const ray = offset === undefined ? grip : composed(grip, inverted(placeAt(offset)));
+    const ray = composed(grip, this.rayFromGrip(side));
     put(controller.position, controller.quaternion, ray.positionM, ray.rotation);
+  }
+
+  /** grip_from_ray of a controller: where its ray starts, along -z. */
+  rayFromGrip(side: Side): Place {
+    const offset = this.controller(side).inputSource.gripSpace?.[P_SPACE].offsetMatrix;
+    return offset === undefined ? AT_ORIGIN : inverted(placeAt(offset));
   }
 
   /** Press or release a button of a controller; for a tracked hand, `select` is the pinch. */

@@ -20,7 +20,10 @@ export type GoalPart = (typeof GOAL_PARTS)[number];
 export type GoalState = "tracked" | "inferred" | "lost";
 
 export interface TrackedPart {
-  /** The pose of the device at the part; null if it is lost. */
+  /**
+   * The pose of the device at the part; null if it is lost, or if it is only known to inverse
+   * kinematics (a waist that is inferred from head and shins).
+   */
   readonly place: Place | null;
   readonly state: GoalState;
 }
@@ -57,11 +60,23 @@ export type SourceKind =
   | "capture"
   | "desktop";
 
+/** The measures of a body that is not measured, because a script, a capture or a page moves it. */
+export interface KnownBody {
+  readonly statureM: number;
+  /** From finger tip to finger tip in the T-pose. */
+  readonly spanM: number;
+}
+
 /** One way of tracking. It reads without allocating where it can: it is called every frame. */
 export interface TrackingSource {
   readonly kind: SourceKind;
   /** Parts that this source can measure at all; feet need both shins. */
   readonly measures: ReadonlySet<GoalPart>;
+  /**
+   * Set if the source moves a body of its own: then its places are those of joints, in the world's
+   * frame, and there is nothing to calibrate. Null for devices that somebody wears.
+   */
+  readonly knownBody: KnownBody | null;
   /** Read the devices; the frame is valid until the next call. `frame` is null without WebXR. */
   read(timeS: number, frame: XRFrame | null): TrackedFrame;
   dispose(): void;
