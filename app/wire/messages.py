@@ -429,7 +429,8 @@ class Welcome(Message):
     """The answer to a hello: the client's epoch, the position of each stream, the study's tasks.
 
     `bodies`: the bodies that conditions of the study name, in the order of its file; left out if
-    there are none. A client requests the avatar of each before the first block.
+    there are none. A client requests the avatar of each before the first block. `appearance`: the
+    palettes of the study's boxes, as in its file.
     """
 
     type: Literal["welcome"] = "welcome"
@@ -446,6 +447,7 @@ class Welcome(Message):
     positions: tuple[StreamPosition, ...]
     state: HeadsetState
     bodies: tuple[str, ...] = Field(default=(), exclude_if=lambda value: not value)
+    appearance: dict[str, Any] = Field(default_factory=dict, exclude_if=lambda value: not value)
 
 
 class Ack(Message):

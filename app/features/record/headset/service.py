@@ -94,6 +94,7 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
         positions=positions_of(db, session_id),
         state=headset_state(db, session, changes_avatar=hello.changes_avatar),
         bodies=protocol.bodies,
+        appearance=protocol.appearance.model_dump(mode="json"),
     )
 
 

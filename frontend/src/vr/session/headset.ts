@@ -93,7 +93,9 @@ export class Headset {
     }
     const shown = this.#bodies?.latest() ?? null;
     const { run } = this.#phases;
-    scenery.show({ timeS, place: this.#placeIn(state), state, tracked, bodies: shown, run });
+    const place = this.#placeIn(state);
+    const isCurtainDrawn = false;
+    scenery.show({ timeS, place, state, tracked, bodies: shown, run, isCurtainDrawn });
     this.#recorder.send(timeS);
   }
 

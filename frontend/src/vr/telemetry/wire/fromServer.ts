@@ -124,6 +124,8 @@ const Welcome = v.object({
   state: HeadsetState,
   /** The bodies that the study's conditions prescribe; left out if there are none. */
   bodies: v.optional(v.array(v.string())),
+  /** The palettes of the study's boxes, as in its file; a server of an older version has none. */
+  appearance: v.optional(v.record(v.string(), v.unknown())),
 });
 export type Welcome = v.InferOutput<typeof Welcome>;
 
