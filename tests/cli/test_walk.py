@@ -127,6 +127,34 @@ def test_other_people_are_predicted(lab: Path) -> None:
     assert "CRPS" in even.stdout
 
 
+def test_a_fit_names_how_each_walk_was_used(tmp_path: Path) -> None:
+    """JSON lists each walk with the distance walked and its path's, and what was left out."""
+    along = np.arange(0.0, 3.0, 0.02)
+    courses = {
+        "A": np.stack([along, np.zeros_like(along)], axis=-1),
+        "B": np.stack([np.sin(along), 1.0 - np.cos(along)], axis=-1),
+        "C": np.stack([np.sin(2.1 * along), 1.0 - np.cos(2.1 * along)], axis=-1) / 2.1,
+    }
+    rows = [
+        f"{subject},{at},{100.0 * x:.3f},{100.0 * y:.3f}"
+        for subject, course in courses.items()
+        for at, (x, y) in enumerate(course)
+    ]
+    table, model = tmp_path / "walks.csv", tmp_path / "model.npz"
+    table.write_text("\n".join(["subject,frame,x,y", *rows]) + "\n")
+    assert "frame rate" in _refusal("fit", table, "--out", model)
+    assert "m, cm, mm are valid" in _refusal("fit", table, "--unit", "inch", "--out", model)
+    figures = _figures("fit", table, "--rate-hz", 60, "--unit", "cm", "--out", model, *QUICK)
+    straight, curved = figures["fitted"]
+    assert (straight["own_path"], curved["own_path"]) == (False, True)
+    assert curved["walk"] == "walks.csv, B, walk 1"
+    assert curved["walked_m"] == pytest.approx(3.0, rel=0.02)
+    assert curved["turning_rad"] == pytest.approx(3.0, rel=0.15)
+    (left_out,) = figures["left_out"]
+    assert left_out["walk"] == "walks.csv, C, round 1"
+    assert "ends within 0.25 m of its start" in left_out["reason"]
+
+
 def _fit(lab: Path, *arguments: object) -> str:
     out = lab / "refused.npz"
     output = _refusal("fit", *arguments, "--out", out, *QUICK)

@@ -21,6 +21,12 @@ _Scene = Annotated[
 _People = Annotated[
     Path | None, typer.Option(help="CSV: subject, stature_m, and file if files name no subject.")
 ]
+_Rate = Annotated[
+    float | None, typer.Option(help="Frames a second, where a table's time is a frame number.")
+]
+_Unit = Annotated[
+    str | None, typer.Option(help="Unit of x and y in tables that do not name it: m, cm or mm.")
+]
 _Seed = Annotated[int, typer.Option(help="Seed of all random draws.", min=0)]
 
 
@@ -30,6 +36,8 @@ def fit(
     out: Annotated[Path, typer.Option(help="Model file to write.")],
     scene: _Scene = None,
     people: _People = None,
+    rate_hz: _Rate = None,
+    unit: _Unit = None,
     seed: _Seed = 1,
     k: Annotated[int, typer.Option(help="Neighbours used for a prediction.", min=1)] = 100,
     entries: Annotated[
@@ -44,7 +52,8 @@ def fit(
     from app.cli.walk import output as texts
     from app.cli.walk.run import FitOrder, WalksOrder, carry_out_fit
 
-    order = FitOrder(WalksOrder(tuple(walks), scene, people), out, seed, k, entries, reading)
+    recorded = WalksOrder(tuple(walks), scene, people, rate_hz, unit)
+    order = FitOrder(recorded, out, seed, k, entries, reading)
     with reported(ValueError, OSError):
         done = carry_out_fit(order, _show_progress if sys.stderr.isatty() else None)
     print(json.dumps(texts.fit_json(done)) if as_json else texts.fit_text(done))
@@ -86,6 +95,8 @@ def evaluate(
     walks: _Walks,
     scene: _Scene = None,
     people: _People = None,
+    rate_hz: _Rate = None,
+    unit: _Unit = None,
     draws: Annotated[int, typer.Option(help="Draws for each walk.")] = 200,
     seed: _Seed = 1,
     even_fitted: Annotated[
@@ -97,7 +108,7 @@ def evaluate(
     from app.cli.walk import output as texts
     from app.cli.walk.run import WalksOrder, carry_out_evaluation
 
-    order = WalksOrder(tuple(walks), scene, people)
+    order = WalksOrder(tuple(walks), scene, people, rate_hz, unit)
     with reported(ValueError, OSError):
         fit_, result = carry_out_evaluation(
             model, order, draws=draws, seed=seed, even_fitted=even_fitted

@@ -2,6 +2,7 @@
 
 import csv
 import io
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,8 +14,15 @@ from app.errors import missing_file
 from app.protocol import ConfigError
 from app.science.rig import RigError
 from app.science.walking.planning import LazyThetaPlanner
-from app.science.walking.recording import Walker, planned_walk, track_of_motion, walks_of
-from app.science.walking.records import PlannedWalk, Planner, Track, Walk, WalkingError
+from app.science.walking.recording import (
+    LeftOut,
+    Walker,
+    entry_of,
+    rounds_of,
+    track_of_motion,
+    walks_of,
+)
+from app.science.walking.records import PlannedWalk, Planner, Track, WalkingError
 from app.science.walking.scene import Scene, open_scene
 
 MOST_BYTES = 500_000_000
@@ -33,6 +41,32 @@ class People:
 
     statures_m: dict[str, float] = field(default_factory=dict)
     subjects: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Tables:
+    """What tables of tracks do not say themselves.
+
+    Attributes:
+        rate_hz: frames a second, for tables whose time is a frame number.
+        metres_per_unit: the unit of x and y; None to take it from the columns' names.
+    """
+
+    rate_hz: float | None = None
+    metres_per_unit: float | None = None
+
+
+UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+"""Metres per unit, by the names that `--unit` accepts."""
+
+
+def tables_of(rate_hz: float | None, unit: str | None) -> Tables:
+    """Return how to read tables; raise ValueError for a rate or a unit that is not valid."""
+    if rate_hz is not None and not 1.0 <= rate_hz <= 10_000.0:
+        raise ValueError(f"--rate-hz {rate_hz:g}: 1 to 10000 frames a second are valid")
+    if unit is not None and unit not in UNITS_M:
+        raise ValueError(f"--unit {unit!r}: {', '.join(UNITS_M)} are valid")
+    return Tables(rate_hz, None if unit is None else UNITS_M[unit])
 
 
 def read_people(path: Path | None) -> People:
@@ -86,48 +120,73 @@ def read_scene(key: str | None) -> Scene | None:
         raise ValueError(f"{path}: not UTF-8 text ({error})") from error
 
 
-def read_walks(files: Sequence[Path], people: People) -> list[Walk]:
-    """Read all walks of some files, in their order.
+@dataclass(frozen=True, eq=False)
+class Entries:
+    """The walks of some files, each with its path, and the walks that were left out.
+
+    Attributes:
+        entries: the walks that are used, in the order of the files.
+        names: for each entry, its file, person and number.
+        left_out: name and reason of each walk that is not used.
+    """
+
+    entries: list[PlannedWalk] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)
+    left_out: list[tuple[str, str]] = field(default_factory=list)
+
+
+def read_entries(
+    files: Sequence[Path], people: People, scene: Scene | None, tables: Tables = Tables()
+) -> Entries:
+    """Read all walks of some files, with their paths: on open floor if there is no scene.
 
     Raises:
-        ValueError: a file cannot be used, or contains no walk.
-        OSError: one cannot be opened.
+        ValueError: a file cannot be used, or contains no movement from one place to another; no
+            path connects a walk's ends, or one of them is in an obstacle; no walk can be used.
+        OSError: a file cannot be opened.
     """
-    walks = []
+    found = Entries()
+    planner = None if scene is None else LazyThetaPlanner(scene)
     for path in files:
-        found = [walk for track in _tracks(path, people) for walk in walks_of(track)]
-        if not found:
+        tracks = _tracks(path, people, tables)
+        walks = [walk for track in tracks for walk in walks_of(track)]
+        rounds = [walk for track in tracks for walk in rounds_of(track)]
+        if not walks and not rounds:
             raise ValueError(
                 f"{path}: it contains no walk; a walk ends 0.25 m or farther from its start."
             )
-        walks += found
-    return walks
+        counts: Counter[str] = Counter()
+        for walk in walks:
+            counts[walk.subject] += 1
+            name = f"{walk.source}, {walk.subject}, walk {counts[walk.subject]}"
+            used: Planner = planner or LazyThetaPlanner(open_scene(walk.start_m, walk.goal_m))
+            try:
+                entry = entry_of(walk, used)
+            except WalkingError as error:
+                raise ValueError(f"{name}: {error}") from error
+            if isinstance(entry, LeftOut):
+                found.left_out.append((name, entry.reason))
+            else:
+                found.entries.append(entry)
+                found.names.append(name)
+        found.left_out.extend(
+            (
+                f"{walk.source}, {walk.subject}, round {number}",
+                f"it goes {walk.length_m:.2f} m and ends within 0.25 m of its start",
+            )
+            for number, walk in enumerate(rounds, start=1)
+        )
+    if not found.entries:
+        listed = "; ".join(f"{name}: {reason}" for name, reason in found.left_out)
+        raise ValueError(f"no walk can be used. {listed}.")
+    return found
 
 
-def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
-    """Plan each walk's path, on open floor if there is no scene.
-
-    Raises:
-        ValueError: no path connects a walk's ends, or one of them is in an obstacle.
-    """
-    planner = None if scene is None else LazyThetaPlanner(scene)
-    entries = []
-    for number, walk in enumerate(walks, start=1):
-        used: Planner = planner or LazyThetaPlanner(open_scene(walk.start_m, walk.goal_m))
-        try:
-            entries.append(planned_walk(walk, used))
-        except WalkingError as error:
-            raise ValueError(
-                f"walk {number}, of {walk.subject} ({walk.source}): {error}"
-            ) from error
-    return entries
-
-
-def _tracks(path: Path, people: People) -> list[Track]:
+def _tracks(path: Path, people: People, tables: Tables) -> list[Track]:
     try:
         header = _header(path)
         if all(header & names for names in _TRACK_COLUMNS) or path.suffix.lower() == ".txt":
-            return _table(path, header, people)
+            return _table(path, header, people, tables)
         subject = people.subjects.get(path.name, path.stem)
         walker = Walker(subject, path.name, people.statures_m.get(subject))
         return [track_of_motion(read_capture_file(path).motion, walker)]
@@ -144,8 +203,12 @@ def _header(path: Path) -> set[str]:
     return {cell.strip().strip('"') for cell in first.replace(";", ",").split(",")}
 
 
-def _table(path: Path, header: set[str], people: People) -> list[Track]:
-    reading = TrackReading(statures_m=people.statures_m)
+def _table(path: Path, header: set[str], people: People, tables: Tables) -> list[Track]:
+    reading = TrackReading(
+        rate_hz=tables.rate_hz,
+        metres_per_unit=tables.metres_per_unit,
+        statures_m=people.statures_m,
+    )
     tracks = read_tracks(path.read_bytes(), name=path.name, reading=reading)
     if path.suffix.lower() == ".txt" or header & _PERSON_COLUMNS:
         return tracks

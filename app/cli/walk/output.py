@@ -8,6 +8,9 @@ from app.cli.walk.run import Fitted, Sampled
 from app.science.walking.evaluation import COVERAGES, PERCENTILES, Evaluation
 from app.science.walking.maps import SuitabilityOptions
 from app.science.walking.models import FittedWalking
+from app.science.walking.records import TURNING
+
+_SHOWN = 6
 
 
 def fit_json(done: Fitted) -> dict[str, object]:
@@ -22,6 +25,17 @@ def fit_json(done: Fitted) -> dict[str, object]:
         "dependencies": list(fit.database.names),
         "without": list(done.left_out),
         "cut_walks": done.cut,
+        "fitted": [
+            {
+                "walk": name,
+                "walked_m": entry.walk.length_m,
+                "length_m": entry.path.length_m,
+                "turning_rad": entry.dependencies[TURNING] * entry.path.length_m,
+                "own_path": entry.is_own_path,
+            }
+            for name, entry in zip(done.walks.names, done.walks.entries, strict=True)
+        ],
+        "left_out": [{"walk": name, "reason": reason} for name, reason in done.walks.left_out],
         "entries": len(fit.space.z),
         "k": fit.space.k,
         "reading": asdict(fit.reading),
@@ -47,6 +61,19 @@ def fit_text(done: Fitted) -> str:
     ]
     if done.left_out:
         lines.append(f"  {'left out':<14}{', '.join(done.left_out)}: not known for all walks")
+    own = [
+        f"{name} ({entry.walk.length_m:.2f} m, {entry.path.length_m:.2f} m without sway)"
+        for name, entry in zip(done.walks.names, done.walks.entries, strict=True)
+        if entry.is_own_path
+    ]
+    if own:
+        lines.append(
+            f"  {'own path':<14}{len(own)} walk(s) took another way than the shortest and are"
+            f" fitted on it: {_some(own)}"
+        )
+    if done.walks.left_out:
+        listed = [f"{name}: {reason}" for name, reason in done.walks.left_out]
+        lines.append(f"  {'walks left out':<14} {_some(listed)}")
     if done.cut:
         lines.append(
             f"  {'note':<14}{done.cut} walk(s) begin or end with the recording, amid walking; they"
@@ -64,6 +91,11 @@ def fit_text(done: Fitted) -> str:
     )
     lines += [f"  {'static':<14}{parameters}", "", f"written: {done.order.out}"]
     return "\n".join(lines)
+
+
+def _some(texts: list[str]) -> str:
+    more = f"; and {len(texts) - _SHOWN} more (--json has all)" if len(texts) > _SHOWN else ""
+    return "; ".join(texts[:_SHOWN]) + more
 
 
 def reading_text(options: SuitabilityOptions) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.adapters.walks.model_file import read_model, write_model
 from app.cli.errors import require_folder_of
-from app.cli.walk.inputs import People, planned, read_people, read_scene, read_walks
+from app.cli.walk.inputs import Entries, read_entries, read_people, read_scene, tables_of
 from app.science.walking.evaluation import Evaluation, evaluate
 from app.science.walking.following import SteeringFollower
 from app.science.walking.maps import (
@@ -51,6 +51,8 @@ class WalksOrder:
     files: tuple[Path, ...]
     scene: str | None = None
     people: Path | None = None
+    rate_hz: float | None = None
+    unit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,7 @@ class Fitted:
 
     Attributes:
         content_hash: of the file's content.
+        walks: the walks that were fitted, and those that were left out with the reason.
         left_out: dependencies that are not known for all walks.
         cut: number of walks that the recording cuts off at their start or end.
     """
@@ -94,6 +97,7 @@ class Fitted:
     order: FitOrder
     fit: FittedWalking
     content_hash: str
+    walks: Entries
     left_out: tuple[str, ...]
     cut: int
 
@@ -114,7 +118,8 @@ def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None =
     if order.reading not in READINGS:
         raise ValueError(f"--reading {order.reading!r}: {', '.join(READINGS)} are valid")
     require_folder_of(order.out)
-    entries = _entries(order.walks)
+    read = _read(order.walks)
+    entries = read.entries
     names, left_out = _names(entries)
     people = {entry.walk.subject for entry in entries}
     if len(people) < 2:
@@ -129,7 +134,7 @@ def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None =
     fit = fitted(database, options)
     digest = write_model(order.out, fit, follower.rules)
     cut = sum(not (one.walk.begins_still and one.walk.ends_still) for one in entries)
-    return Fitted(order, fit, digest, left_out, cut)
+    return Fitted(order, fit, digest, read, left_out, cut)
 
 
 def carry_out_sample(order: SampleOrder) -> Sampled:
@@ -156,7 +161,7 @@ def carry_out_evaluation(
     if not 1 <= draws <= 10_000:
         raise ValueError(f"--draws {draws}: 1 to 10000 are valid")
     fit, rules, _ = read_model(model)
-    entries = _entries(walks)
+    entries = _read(walks).entries
     fitted_on = {entry.walk.subject for entry in entries} & set(fit.database.subjects)
     if fitted_on and not even_fitted:
         raise ValueError(
@@ -175,10 +180,9 @@ def _course(entry: PlannedWalk) -> str:
     return f"{round(4.0 * entry.path.length_m) / 4.0:g} m"
 
 
-def _entries(order: WalksOrder) -> list[PlannedWalk]:
-    people: People = read_people(order.people)
-    scene = read_scene(order.scene)
-    return planned(read_walks(order.files, people), scene)
+def _read(order: WalksOrder) -> Entries:
+    tables = tables_of(order.rate_hz, order.unit)
+    return read_entries(order.files, read_people(order.people), read_scene(order.scene), tables)
 
 
 def _names(entries: list[PlannedWalk]) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -25,9 +25,10 @@ from app.protocol import ConfigError
 from app.science.rig import RigError
 from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.recording import (
+    LeftOut,
     TrackingOptions,
     Walker,
-    planned_walk,
+    entry_of,
     track_of_motion,
     walks_of,
 )
@@ -108,18 +109,24 @@ def walks_in(tracks: Sequence[Track]) -> list[Walk]:
 
 
 def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
-    """Plan a path for each walk, on an open floor if there is no scene; raise Cannot."""
+    """Find the path of each walk, on an open floor if there is no scene; raise Cannot."""
     planner = None if scene is None else LazyThetaPlanner(scene)
     entries = []
     for number, walk in enumerate(walks, start=1):
         used = planner or LazyThetaPlanner(open_scene(walk.start_m, walk.goal_m))
         try:
-            entries.append(planned_walk(walk, used))
+            entry = entry_of(walk, used)
         except WalkingError as error:
             raise Cannot(
                 f"walk {number}, of {walk.subject} ({walk.source}): {error}",
                 "Choose the scene in which these walks took place, or none.",
             ) from None
+        if isinstance(entry, LeftOut):
+            raise Cannot(
+                f"walk {number}, of {walk.subject} ({walk.source}): {entry.reason}",
+                "Choose the scene in which these walks took place, or none.",
+            )
+        entries.append(entry)
     return entries
 
 

@@ -1,21 +1,25 @@
 """Extract walks from captures and tracks.
 
 `track_of_motion` extracts a person's track on the floor from a capture, `walks_of` cuts a track
-into walks and `planned_walk` plans a path for each; `census` counts path lengths.
+into walks, and `entry_of` finds the path of each; `planned_walk` always takes the planned one.
+`census` counts path lengths.
 """
 
 from app.science.walking.recording.capture_tracks import TrackingOptions, track_of_motion
 from app.science.walking.recording.census import census
-from app.science.walking.recording.segmentation import walks_of
+from app.science.walking.recording.segmentation import rounds_of, walks_of
 from app.science.walking.recording.tracks import Walker
-from app.science.walking.recording.walks import dependencies_of, planned_walk
+from app.science.walking.recording.walks import LeftOut, dependencies_of, entry_of, planned_walk
 
 __all__ = [
+    "LeftOut",
     "TrackingOptions",
     "Walker",
     "census",
     "dependencies_of",
+    "entry_of",
     "planned_walk",
+    "rounds_of",
     "track_of_motion",
     "walks_of",
 ]

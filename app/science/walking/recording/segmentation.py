@@ -18,6 +18,7 @@ from app.science.rotations import FloatArray
 from app.science.walking.records import BoolArray, Track, Walk, WalkingError
 
 SIGMA_S = 2.0 / 120.0
+_ROUND = 4.0
 REACH = 4.0
 """The filter is truncated at this many sigma, as SciPy's is."""
 
@@ -81,28 +82,49 @@ DEFAULT_RULES = SegmentationRules()
 def walks_of(track: Track, rules: SegmentationRules = DEFAULT_RULES) -> list[Walk]:
     """Cut a track into its walks; empty if the person only stands.
 
-    Walks whose start and goal are closer than `shortest_m` are left out: steps on the spot, and
-    walks that return to where they began, which no path between two points describes.
+    Movements whose start and goal are closer than `shortest_m` are no walks: steps on the spot, and
+    rounds that return to where they began (`rounds_of`), which no path between two points
+    describes.
     """
+    return [walk for walk in _movements(track, rules) if _distance_m(walk) >= rules.shortest_m]
+
+
+def rounds_of(track: Track, rules: SegmentationRules = DEFAULT_RULES) -> list[Walk]:
+    """Return the movements that go somewhere and return, and are therefore no walks.
+
+    Movements shorter than four times `shortest_m` count as steps on the spot.
+    """
+    return [
+        walk
+        for walk in _movements(track, rules)
+        if _distance_m(walk) < rules.shortest_m <= walk.length_m / _ROUND
+    ]
+
+
+def _distance_m(walk: Walk) -> float:
+    return float(np.linalg.norm(walk.xy_m[-1] - walk.xy_m[0]))
+
+
+def _movements(track: Track, rules: SegmentationRules) -> list[Walk]:
+    """Cut a track into its movements from one stop to the next."""
     times_s, places = evenly(track)
     places = smoothed(places, track.rate_hz, rules.sigma_s)
     walks = []
     for first, last in _moving(times_s, places, rules):
         # The slow samples before and after it are its start and its goal.
         begin, end = max(0, first - 1), min(len(times_s) - 1, last + 1)
-        if np.linalg.norm(places[end] - places[begin]) >= rules.shortest_m:
-            walks.append(
-                Walk(
-                    times_s=times_s[begin : end + 1] - times_s[begin],
-                    xy_m=places[begin : end + 1].copy(),
-                    subject=track.subject,
-                    source=track.source,
-                    kind=track.kind,
-                    stature_m=track.stature_m,
-                    begins_still=first > 0,
-                    ends_still=last < len(times_s) - 1,
-                )
+        walks.append(
+            Walk(
+                times_s=times_s[begin : end + 1] - times_s[begin],
+                xy_m=places[begin : end + 1].copy(),
+                subject=track.subject,
+                source=track.source,
+                kind=track.kind,
+                stature_m=track.stature_m,
+                begins_still=first > 0,
+                ends_still=last < len(times_s) - 1,
             )
+        )
     return walks
 
 

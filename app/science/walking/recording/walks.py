@@ -1,7 +1,18 @@
-"""Make database entries from walks: the planned path, and the dependencies."""
+"""Make database entries from walks: the path, and the dependencies.
+
+The model predicts how somebody walks along a planned path, so a walk is compared with agents on the
+path between its own start and goal. People who do not walk that path would spoil the comparison: a
+captured walk of 15 m that turns by 650 degrees ends .34 m from its start, and an agent is there in
+less than a second. So the distance walked is compared with the path's length (`entry_of`). A walk
+that is longer, by more than people sway, has taken another way: it gets its own path, without the
+sway, and with the turning of that path. A walk that is shorter went through what the scene calls an
+obstacle and is left out.
+"""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
+from app.science.walking.recording.segmentation import smoothed
 from app.science.walking.records import (
     LENGTH,
     STATURE,
@@ -13,9 +24,22 @@ from app.science.walking.records import (
     WalkingError,
     check_stature,
 )
-from app.science.walking.scene import turning_per_m
+from app.science.walking.scene import by_length, turning_per_m
 
 NONE: Mapping[str, float] = {}
+LONGER, SHORTER = 1.08, 0.92
+"""Distance walked over planned length: beyond these shares, another path was walked."""
+SWAY_S = 0.2
+"""Standard deviation of the filter that takes most of the sway of a stride from a walk."""
+_SPACING_M = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """A walk that cannot be an entry of the database, and why."""
+
+    walk: Walk
+    reason: str
 
 
 def dependencies_of(
@@ -49,3 +73,32 @@ def planned_walk(walk: Walk, planner: Planner, others: Mapping[str, float] = NON
     """
     path = planner.plan(walk.start_m, walk.goal_m)
     return PlannedWalk(walk, path, dependencies_of(path, walk.stature_m, others))
+
+
+def entry_of(
+    walk: Walk, planner: Planner, others: Mapping[str, float] = NONE
+) -> PlannedWalk | LeftOut:
+    """Make a database entry of a recorded walk, on the path that it really took.
+
+    Raises:
+        SceneError: the planner finds no path.
+    """
+    entry = planned_walk(walk, planner, others)
+    share = walk.length_m / entry.path.length_m
+    if share < SHORTER:
+        return LeftOut(
+            walk,
+            f"{walk.length_m:.2f} m were walked where the shortest path of the scene is"
+            f" {entry.path.length_m:.2f} m: the walk crosses an obstacle",
+        )
+    if share <= LONGER:
+        return entry
+    path = own_path(walk)
+    dependencies = dependencies_of(path, walk.stature_m, others)
+    return PlannedWalk(walk, path, dependencies, is_own_path=True)
+
+
+def own_path(walk: Walk) -> PlannedPath:
+    """Return the path of a walk without the sway of its strides; its ends stay where they are."""
+    rate_hz = (len(walk.times_s) - 1) / walk.duration_s
+    return PlannedPath(by_length(smoothed(walk.xy_m, rate_hz, SWAY_S), _SPACING_M))

@@ -167,13 +167,15 @@ class PlannedWalk:
 
     Attributes:
         walk: the reference.
-        path: the planned path from the walk's start to its goal.
+        path: the planned path from the walk's start to its goal, or, where that is not what was
+            walked, the walk's own path (`is_own_path`).
         dependencies: name -> number; `LENGTH`, `TURNING`, `STATURE` and any others that were given.
     """
 
     walk: Walk
     path: PlannedPath
     dependencies: Mapping[str, float] = field(default_factory=dict)
+    is_own_path: bool = False
 
     def __post_init__(self) -> None:
         """Raise WalkingError if a dependency is not finite; the message names it."""
