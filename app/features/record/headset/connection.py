@@ -150,7 +150,7 @@ class HeadsetConnection:
         # nor in
         # the event loop.
         with self.context.database.reading() as db:
-            return answer, live_telemetry(db, self.session_id)
+            return answer, live_telemetry(db, self.session_id, answer.bodies or ())
 
     async def _read(self) -> None:
         while True:

@@ -36,6 +36,7 @@ class HeadsetMonitor:
     def __post_init__(self) -> None:
         self.poses = PoseFeed(self.context.hub, self.session_id)
         limits = WatchLimits(silent_s=self.context.settings.headset_silent_s)
+        self.live.wear(self.welcome.state.phase)
         self.watch = QualityWatch.of(self.welcome, limits, self._now())
         back = Condition("disconnected", "the headset is back")
         self.submit(AlarmContent(Change("cleared", back, self._now().utc)))
@@ -86,6 +87,7 @@ class HeadsetMonitor:
 
     def update_state(self, state: HeadsetState) -> None:
         """Apply a new state of the session."""
+        self.live.wear(state.phase)
         self.watch.update_state(state, self._now())
 
     async def run(self, is_reading: Callable[[], bool]) -> None:

@@ -1,17 +1,26 @@
 """Compute the console's live figures from the latest messages, before they are committed."""
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.features.record.telemetry.movement import hinges_of
+from app.features.record.telemetry.movement import hinges_of_body
 from app.science.avatar.targets import HingeReference
 from app.science.rotations import identity
 from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 from app.science.tasks import side_unit
-from app.wire import FINGER_STREAMS, Batch, CompletionReport, ContactReport, Report, StreamName
+from app.wire import (
+    FINGER_STREAMS,
+    Batch,
+    CompletionReport,
+    ContactReport,
+    PhaseOrder,
+    Report,
+    StreamName,
+)
 
 PERIOD_S = 0.2
 
@@ -23,10 +32,13 @@ class LiveTelemetry:
     Counting is cheap and always done; figures are computed only while a console is subscribed.
 
     `hinges`: those of a physics avatar, so that its live errors equal the stored ones, which are
-    relative to the pose that the hinges are commanded. None for a delayed copy.
+    relative to the pose that the hinges are commanded. None for a delayed copy. `hinges_by_body`:
+    those of the bodies that conditions name, which may lack parts; `wear` says which is worn.
     """
 
     hinges: HingeReference | None = None
+    hinges_by_body: Mapping[str, HingeReference] = field(default_factory=dict)
+    _worn: str | None = None
     _newest: dict[StreamName, Batch] = field(default_factory=dict)
     _published_s: float = 0.0
     _frames: int = 0
@@ -36,6 +48,21 @@ class LiveTelemetry:
     _completions: int = 0
     _side_contacts: int = 0
     _red_until_s: dict[str, float] = field(default_factory=dict)
+
+    def wear(self, order: PhaseOrder | None) -> None:
+        """Compute errors for the body of a phase's order; without an order nothing changes.
+
+        A participant stays in a body until the next order.
+        """
+        if order is not None:
+            self._worn = order.body
+
+    @property
+    def worn_hinges(self) -> HingeReference | None:
+        """Return the hinges of the body that is worn."""
+        if self._worn is None:
+            return self.hinges
+        return self.hinges_by_body.get(self._worn, self.hinges)
 
     def count(self, report: Report) -> None:
         """Count a completion or a side contact."""
@@ -85,6 +112,7 @@ class LiveTelemetry:
         actual = self._newest[StreamName.ACTUAL]
         target = self._newest.get(StreamName.TARGET)
         fps = self._frame_rate(target)
+        errors_deg = {} if target is None else _errors_deg(target, actual, self.worn_hinges)
         return {
             "phase_id": self._phase_id,
             "active_s": actual.header.active_s,
@@ -93,20 +121,22 @@ class LiveTelemetry:
             "completions": self._completions,
             "side_contacts": self._side_contacts,
             "frames_flagged": self._flagged,
-            "joint_error_deg": {} if target is None else _errors_deg(target, actual, self.hinges),
+            "joint_error_deg": errors_deg,
         }
 
 
-def live_telemetry(db: Session, session_id: str) -> LiveTelemetry:
+def live_telemetry(db: Session, session_id: str, bodies: Iterable[str] = ()) -> LiveTelemetry:
     """Create the live telemetry of a session's connection; raises NotFound.
 
-    This loads what a physics avatar needs, which can take a second, so do not call it on the event
-    loop.
+    `bodies`: the names of those that the study's conditions prescribe. This loads what a physics
+    avatar needs, which can take a second, so do not call it on the event loop.
     """
-    hinges = hinges_of(db, session_id)
-    if hinges is not None:
-        hinges.pose(identity(JOINT_COUNT))
-    return LiveTelemetry(hinges)
+    hinges = {body: hinges_of_body(db, session_id, body) for body in (None, *bodies)}
+    loaded = {body: own for body, own in hinges.items() if own is not None}
+    for own in loaded.values():
+        own.pose(identity(JOINT_COUNT))
+    named = {body: own for body, own in loaded.items() if body is not None}
+    return LiveTelemetry(loaded.get(None), named)
 
 
 def _errors_deg(

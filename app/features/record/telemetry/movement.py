@@ -159,15 +159,23 @@ def hinges_of(db: Session, session_id: str, phase_id: int | None = None) -> Hing
     first call in a process loads the compiler, which takes a second, so do not call it on the
     event loop. Raises NotFound if there is no such session.
     """
+    phase = None if phase_id is None else db.get(Phase, (session_id, phase_id))
+    return hinges_of_body(db, session_id, None if phase is None else phase.body)
+
+
+def hinges_of_body(db: Session, session_id: str, body: str | None) -> HingeReference | None:
+    """Return the hinges of a body that the session's avatar wears, as `hinges_of` does.
+
+    `body` is its name; None for the body of the configuration.
+    """
     content_hash = session_by_id(db, session_id).avatar_configuration_hash
     if content_hash is None:
         return None
     configuration = configuration_by_hash(db, content_hash)
-    phase = None if phase_id is None else db.get(Phase, (session_id, phase_id))
-    if phase is None or phase.body is None:
+    if body is None:
         figure = figure_by_hash(db, configuration.humanoid)
     else:
-        figure = parsed_figure(body_by_name(db, phase.body).figure)
+        figure = parsed_figure(body_by_name(db, body).figure)
     # Leave out parts that the model lacks, even if the configuration mentions them.
     parts = [part for part in configuration.parts if figure is None or part in figure.places_m]
     return HingeReference(configuration.in_force, parts)

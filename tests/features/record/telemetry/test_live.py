@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
+from app.science.avatar.body import PART_NAMES
 from app.science.avatar.configuration import ANATOMIC
 from app.science.avatar.targets import HingeReference, TargetAngles, joint_rotations
 from app.science.rotations import FloatArray, from_rotation_vector, identity
@@ -13,10 +14,11 @@ from app.science.skeleton import JOINT_COUNT, JOINT_INDEX
 from app.wire import VALUES_PER_FRAME, StreamName, decode_batch, encode_batch
 from tests.features.builders import SessionSpec, as_physics, build_session
 from tests.features.lab import Lab
+from tests.rehearsal.orders import order
 
 
 def live_errors_deg(
-    live: LiveTelemetry, target: FloatArray, actual: FloatArray
+    live: LiveTelemetry, target: FloatArray, actual: FloatArray, now_s: float = 1.0
 ) -> dict[str, float]:
     """Return the live joint errors of one frame of both streams."""
     for stream, rotations in ((StreamName.TARGET, target), (StreamName.ACTUAL, actual)):
@@ -34,7 +36,7 @@ def live_errors_deg(
             closed_at_s=0.6,
         )
         live.take(decode_batch(message))
-    figures = live.figures(1.0)
+    figures = live.figures(now_s)
     assert figures is not None
     return dict(figures["joint_error_deg"])
 
@@ -81,3 +83,30 @@ def test_a_connection_gets_the_hinges_of_its_session(lab: Lab) -> None:
     with lab.database.reading() as db:
         assert live_telemetry(db, copy).hinges is None
         assert live_telemetry(db, moved).hinges is not None
+
+
+def test_live_errors_are_of_the_body_that_is_worn() -> None:
+    """A named body without a neck has no error there; the configuration's body has one."""
+    parts = [part for part in PART_NAMES if part != "Neck"]
+    live = LiveTelemetry(HingeReference(ANATOMIC), {"short": HingeReference(ANATOMIC, parts)})
+    pose = identity(JOINT_COUNT)
+    assert live_errors_deg(live, pose, pose)["Neck"] == pytest.approx(0.0, abs=0.1)
+    # The participant stays in the body between phases.
+    for now_s, worn in ((2.0, order(body="short")), (3.0, None)):
+        live.wear(worn)
+        assert live.worn_hinges is live.hinges_by_body["short"]
+        assert live_errors_deg(live, pose, pose, now_s)["Neck"] is None
+    live.wear(order())
+    assert live_errors_deg(live, pose, pose, 4.0)["Neck"] == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_connection_gets_the_hinges_of_the_named_bodies(lab: Lab) -> None:
+    """A connection has hinges for each body that conditions name, next to its own body's."""
+    with lab.database.writing() as db:
+        session = build_session(db, SessionSpec("P-live-bodies"))
+        as_physics(db, session)
+        session_id = session.id
+    with lab.database.reading() as db:
+        live = live_telemetry(db, session_id, ("female", "male"))
+    assert set(live.hinges_by_body) == {"female", "male"}
+    assert live.hinges is not None
