@@ -1,0 +1,12 @@
+/** Panels in the headset: texts, forms and prompts drawn in the scene, and how one stops. */
+export * from "./care/calibrationPrompts";
+export { PauseRoom } from "./care/pauseRoom";
+export * from "./care/prompts";
+export { StopGesture, type StopProgress } from "./care/stopGesture";
+export { StopRing } from "./care/stopRing";
+export { type PanelContent, StillContent } from "./content";
+export { Questionnaire, type QuestionnaireOptions } from "./forms/questionnaire";
+export { Panels } from "./panels";
+export { Reading, type ReadingOptions } from "./reading";
+export type { PanelScreen } from "./surface/screen";
+export { type PanelWords, panelWords } from "./texts";

@@ -1,0 +1,145 @@
+/**
+ * The panel of the headset's page: shows a content in the scene and lets it be pointed at.
+ *
+ * One panel is shown at a time. It stands where the wearer looked when it appeared, and moves there
+ * again when it has been out of sight for a while or the wearer has walked away from it.
+ */
+import type { Vector } from "@shared/rotations";
+import { Group } from "three";
+import { headingOf } from "../tracking/places";
+import type { TrackedFrame } from "../tracking/tracked";
+import type { PanelContent } from "./content";
+import { type HandPointing, hitOf, Pointer, type Side } from "./surface/pointing";
+import { PANEL_DISTANCE_M, PanelSurface } from "./surface/surface";
+import type { Measure } from "./surface/wrap";
+
+/** Outside of this angle beside the middle of the view, a panel cannot be read. */
+const OUT_OF_SIGHT_RAD = (55 * Math.PI) / 180;
+const NEAR_M = 0.7;
+const FAR_M = 2.6;
+const AWAY_S = 1.5;
+
+export class Panels {
+  /** To be added to the scene once. */
+  readonly object = new Group();
+  readonly #surface: PanelSurface;
+  readonly #pointer = new Pointer();
+  readonly #distanceM: number;
+  #content: PanelContent | null = null;
+  #isNew = false;
+  #isPlaced = false;
+  #shownKey = "";
+  #awaySinceS: number | null = null;
+  /** Called when something was pressed: for a sound, or a pulse of the controller. */
+  onPressed: ((side: Side | null) => void) | null = null;
+
+  /** `distanceM`: from the eyes; the panel has to stand between the wearer and the mirror. */
+  constructor({
+    distanceM = PANEL_DISTANCE_M,
+    canvas,
+  }: {
+    readonly distanceM?: number;
+    readonly canvas?: HTMLCanvasElement;
+  } = {}) {
+    this.#distanceM = distanceM;
+    this.#surface = new PanelSurface(canvas);
+    this.object.name = "panels";
+    this.object.add(this.#surface.object, this.#surface.beam);
+  }
+
+  /** How wide a text is, for contents that divide themselves into pages. */
+  get measure(): Measure {
+    return this.#surface.measure;
+  }
+
+  get content(): PanelContent | null {
+    return this.#content;
+  }
+
+  /** Show a content, or nothing. The same content again changes nothing. */
+  show(content: PanelContent | null): void {
+    if (content === this.#content) return;
+    if (this.#content !== null) this.#content.onChange = null;
+    // A panel that follows another one stays where it is.
+    if (this.#content === null) this.#isPlaced = false;
+    this.#content = content;
+    this.#isNew = true;
+    if (content !== null) {
+      content.onChange = () => {
+        this.#isNew = true;
+      };
+    }
+  }
+
+  /** Let the panel stand in front of the wearer again, as the operator may ask for. */
+  recentre(): void {
+    this.#isPlaced = false;
+  }
+
+  /** One frame: draw what has changed, follow the rays, take a press. */
+  update(frame: TrackedFrame): void {
+    this.#draw(frame.timeS);
+    if (this.#content === null) return;
+    this.#place(frame);
+    const pointed = this.#pointer.update(frame.timeS, {
+      left: this.#pointing(frame, "left"),
+      right: this.#pointing(frame, "right"),
+    });
+    const ray = pointed.side === null ? null : frame.hands[pointed.side].ray;
+    const hit = ray === null ? null : hitOf(ray, this.#surface.board);
+    this.#surface.point(this.#surface.targetAt(hit), hit, ray);
+    if (pointed.pressed === null) return;
+    this.onPressed?.(pointed.side);
+    this.#content.press(pointed.pressed, frame.timeS * 1000);
+  }
+
+  #draw(nowS: number): void {
+    if (!this.#isNew) return;
+    this.#isNew = false;
+    const screen = this.#content?.screen ?? null;
+    this.#surface.show(screen);
+    if (screen !== null && screen.key !== this.#shownKey) this.#pointer.screenChanged(nowS);
+    this.#shownKey = screen?.key ?? "";
+  }
+
+  #place({ eyes, timeS }: TrackedFrame): void {
+    if (eyes === null) return;
+    const heading = headingOf(eyes);
+    if (!this.#isPlaced) {
+      this.#surface.place(eyes.positionM, heading, this.#distanceM);
+      this.#isPlaced = true;
+      this.#awaySinceS = null;
+      return;
+    }
+    const [dx, dz] = fromTo(eyes.positionM, this.#surface.board.centreM);
+    const distanceM = Math.hypot(dx, dz);
+    const beside = Math.abs(wrapped(Math.atan2(-dx, -dz) - heading));
+    const isAway = beside > OUT_OF_SIGHT_RAD || distanceM < NEAR_M || distanceM > FAR_M;
+    if (!isAway) this.#awaySinceS = null;
+    else if (this.#awaySinceS === null) this.#awaySinceS = timeS;
+    else if (timeS - this.#awaySinceS > AWAY_S) this.#isPlaced = false;
+  }
+
+  #pointing(frame: TrackedFrame, side: Side): HandPointing {
+    const { ray, isSelecting } = frame.hands[side];
+    const hit = ray === null ? null : hitOf(ray, this.#surface.board);
+    return { hit, target: this.#surface.targetAt(hit)?.target ?? null, isSelecting };
+  }
+
+  /** Where the targets are in the room, for tests that point at them. */
+  get targetsM(): readonly { readonly target: string; readonly atM: Vector }[] {
+    return this.#surface.targetsM;
+  }
+
+  dispose(): void {
+    this.show(null);
+    this.#surface.dispose();
+  }
+}
+
+const fromTo = (from: Vector, to: Vector): readonly [number, number] => [
+  to[0] - from[0],
+  to[2] - from[2],
+];
+
+const wrapped = (angle: number): number => Math.atan2(Math.sin(angle), Math.cos(angle));
