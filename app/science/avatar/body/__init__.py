@@ -17,6 +17,7 @@ from app.science.avatar.body.humanoid_pose import RiggedMesh, TPosed, humanoid_o
 from app.science.avatar.body.inertial import Inertial, combined
 from app.science.avatar.body.layers import (
     COLLIDING,
+    LAYER_OF,
     LAYERS,
     NO_COLLISION,
     SCENE,
@@ -53,6 +54,7 @@ __all__ = [
     "FINGERS",
     "FINGER_PARTS",
     "LAYERS",
+    "LAYER_OF",
     "NO_COLLISION",
     "PARENT_OF",
     "PART_NAMES",

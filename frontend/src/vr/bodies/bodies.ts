@@ -8,6 +8,7 @@
  */
 import type { Goals } from "@shared/avatar/goals";
 import type { AvatarOrder } from "../telemetry/wire/fromServer";
+import type { Health } from "./physics/simulation";
 
 /** Root position x, y, z (m, world), then 22 local rotations w, x, y, z: as in the streams (91). */
 export type PoseValues = Float64Array;
@@ -35,8 +36,11 @@ export interface BodiesFrame {
    */
   readonly touched: Uint8Array;
   readonly near: Uint8Array;
-  /** Time that the computation took, ms. */
+  /** Time that the computation took, ms, and how much of it inverse kinematics. */
   readonly tookMs: number;
+  readonly ikMs: number;
+  /** What the simulation had to put right since it started. */
+  readonly health: Health;
 }
 
 export interface Bodies {

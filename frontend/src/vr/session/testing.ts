@@ -146,6 +146,8 @@ export function computedAt(timeS: number): BodiesFrame {
     touched: new Uint8Array(0),
     near: new Uint8Array(0),
     tookMs: 0,
+    ikMs: 0,
+    health: { restored: 0, resets: 0, ignoredInputs: 0, limitedTargets: 0, teleports: 0 },
   };
 }
 
