@@ -161,6 +161,7 @@ const HAND = {
 const PART = {
   place: { positionM: [0, 1, 0], rotation: [1, 0, 0, 0] },
   state: "tracked",
+  device: "controller",
 } as const;
 
 /** A source whose head moves all the time, and whose grips a test presses. */
@@ -176,12 +177,12 @@ export class FakeSource implements TrackingSource {
       timeS,
       eyes: { positionM: [timeS, 1.6, 0], rotation: [1, 0, 0, 0] },
       parts: {
-        Hips: { place: null, state: "lost" },
+        Hips: { place: null, state: "lost", device: null },
         Head: PART,
         LeftHand: PART,
         RightHand: PART,
-        LeftLowerLeg: { place: null, state: "lost" },
-        RightLowerLeg: { place: null, state: "lost" },
+        LeftLowerLeg: { place: null, state: "lost", device: null },
+        RightLowerLeg: { place: null, state: "lost", device: null },
       },
       hands: { left: hand, right: hand },
     };

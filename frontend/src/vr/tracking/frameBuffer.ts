@@ -1,7 +1,14 @@
 /** One frame of tracking that sources fill again and again. */
 import type { Place } from "@shared/avatar/hips";
 import type { Vector } from "@shared/rotations";
-import type { GoalPart, GoalState, HandInput, TrackedFrame, TrackedPart } from "./tracked";
+import type {
+  GoalPart,
+  GoalState,
+  HandInput,
+  TrackedFrame,
+  TrackedPart,
+  TrackingDevice,
+} from "./tracked";
 
 export type HandSide = "left" | "right";
 export const HAND_SIDES = ["left", "right"] as const;
@@ -20,7 +27,7 @@ export interface FrameBuffer extends TrackedFrame {
   readonly hands: Record<HandSide, MutableHand>;
 }
 
-const lost = (): MutablePart => ({ place: null, state: "lost" });
+const lost = (): MutablePart => ({ place: null, state: "lost", device: null });
 
 const emptyHand = (): MutableHand => ({
   fingers: null,
@@ -48,23 +55,35 @@ export const frameBuffer = (): FrameBuffer => ({
 export function clear(buffer: FrameBuffer, timeS: number): void {
   buffer.timeS = timeS;
   buffer.eyes = null;
-  for (const part of Object.values(buffer.parts)) set(part, null, "lost");
+  for (const part of Object.values(buffer.parts)) lose(part);
   for (const hand of Object.values(buffer.hands)) Object.assign(hand, NOTHING);
 }
 
 const NOTHING: HandInput = emptyHand();
 
-export function set(part: MutablePart, place: Place | null, state: GoalState): void {
+export function set(
+  part: MutablePart,
+  place: Place,
+  device: TrackingDevice,
+  state: GoalState = "tracked",
+): void {
   part.place = place;
   part.state = state;
+  part.device = device;
 }
 
-/** Both shins or a head and nothing below: inverse kinematics then infers the hips. */
+export function lose(part: MutablePart): void {
+  part.place = null;
+  part.state = "lost";
+  part.device = null;
+}
+
+/** Without a tracker at the waist, inverse kinematics infers the hips from head and shins. */
 export function inferHips({ parts, eyes }: FrameBuffer): void {
   if (parts.Hips.place !== null) return;
   const { LeftLowerLeg: left, RightLowerLeg: right } = parts;
   const canInfer = eyes !== null && left.place !== null && right.place !== null;
-  set(parts.Hips, null, canInfer ? "inferred" : "lost");
+  parts.Hips.state = canInfer ? "inferred" : "lost";
 }
 
 export type Ray = { readonly originM: Vector; readonly direction: Vector };

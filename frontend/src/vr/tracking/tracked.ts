@@ -19,6 +19,13 @@ export type GoalPart = (typeof GOAL_PARTS)[number];
  */
 export type GoalState = "tracked" | "inferred" | "lost";
 
+/**
+ * What gives the pose of a part: it decides which calibrated offset leads from there to the joint.
+ * A `hand` is the wrist of a tracked hand and a `joint` that of a body that the source moves itself,
+ * both with the T-pose's axes: neither needs an offset.
+ */
+export type TrackingDevice = "headset" | "controller" | "hand" | "body" | "tracker" | "joint";
+
 export interface TrackedPart {
   /**
    * The pose of the device at the part; null if it is lost, or if it is only known to inverse
@@ -26,6 +33,8 @@ export interface TrackedPart {
    */
   readonly place: Place | null;
   readonly state: GoalState;
+  /** Null without a place. */
+  readonly device: TrackingDevice | null;
 }
 
 /** What a hand, or the controller in it, does besides being somewhere. */

@@ -2,7 +2,7 @@
 import type { Vector } from "@shared/rotations";
 import type { GoalPart, HandInput, TrackedFrame, TrackedPart } from "../../tracking/tracked";
 
-const LOST: TrackedPart = { place: null, state: "lost" };
+const LOST: TrackedPart = { place: null, state: "lost", device: null };
 
 export const EMPTY_HAND: HandInput = {
   fingers: null,

@@ -187,7 +187,7 @@ describe("A scripted source", () => {
     const dressed = worn.read(0.5);
     expect(joints.knownBody).toEqual({ statureM: 1.75, spanM: expect.closeTo(1.9915, 4) });
     expect(worn.knownBody).toBeNull();
-    expect(bare.parts.Hips).toEqual({ place: null, state: "inferred" });
+    expect(bare.parts.Hips).toEqual({ place: null, state: "inferred", device: null });
     expect(dressed.parts.Hips.state).toBe("tracked");
     expect(dressed.eyes?.positionM[1]).toBeCloseTo(0.936 * 1.75, 1);
     expect(bare.eyes).toEqual(dressed.eyes);

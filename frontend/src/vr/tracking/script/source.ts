@@ -8,9 +8,18 @@ import {
   inferHips,
   set,
 } from "../frameBuffer";
-import type { GoalPart, KnownBody, TrackedFrame, TrackingSource } from "../tracked";
+import type { GoalPart, KnownBody, TrackedFrame, TrackingDevice, TrackingSource } from "../tracked";
 import { NO_OFFSETS, WornDevices, type WornOptions } from "./devices";
 import type { ScriptedPerson } from "./person";
+
+const DEVICES: Readonly<Record<GoalPart, TrackingDevice>> = {
+  Hips: "tracker",
+  Head: "headset",
+  LeftHand: "controller",
+  RightHand: "controller",
+  LeftLowerLeg: "tracker",
+  RightLowerLeg: "tracker",
+};
 
 export interface ScriptSourceOptions {
   /** With its devices the person must be calibrated; null: places are those of joints. */
@@ -49,7 +58,13 @@ export class ScriptSource implements TrackingSource {
     const { person, devices, frame } = this;
     person.advance(timeS);
     clear(frame, timeS);
-    for (const part of this.measures) set(frame.parts[part], devices.place(part), "tracked");
+    for (const part of this.measures) {
+      set(
+        frame.parts[part],
+        devices.place(part),
+        this.knownBody === null ? DEVICES[part] : "joint",
+      );
+    }
     frame.eyes = this.knownBody === null ? frame.parts.Head.place : eyesOf(person);
     inferHips(frame);
     for (const side of HAND_SIDES) {
