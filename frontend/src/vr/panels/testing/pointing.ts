@@ -15,6 +15,7 @@ export const EMPTY_HAND: HandInput = {
 const at = (positionM: Vector): TrackedPart => ({
   place: { positionM, rotation: [1, 0, 0, 0] },
   state: "tracked",
+  device: "headset",
 });
 
 export interface Wearing {
