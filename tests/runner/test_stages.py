@@ -131,10 +131,10 @@ def test_help_describes_the_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(f'"{key}"' in told for key in as_json([], 0.0))
 
 
-def test_architecture_and_browser_tests_have_stages_of_their_own() -> None:
-    """Every folder that the stage of all tests ignores is run by a separate stage."""
+def test_builds_and_browser_tests_have_stages_of_their_own() -> None:
+    """Everything that the stage of all tests ignores is run by a separate stage."""
     commands = {stage.name: stage.command for stage in stages.stages(long=False)}
     ignored = [word.partition("=")[2] for word in commands["tests"] if word.startswith("--ignore=")]
-    others = {folder for folder in ignored for name in commands if folder in commands[name]}
+    others = {path for path in ignored for name in commands if path in commands[name]}
     assert sorted(others) == sorted(ignored)
-    assert all((REPOSITORY / folder).is_dir() for folder in ignored)
+    assert all((REPOSITORY / path).exists() for path in ignored)

@@ -29,8 +29,12 @@ FRONTEND = REPOSITORY / "frontend"
 OURS = ("app", "migrations", "tests", "build_pages.py", "hatch_build.py", "set_up.py")
 # All tests in there are browser tests, and no others are.
 BROWSER_TESTS = "tests/e2e"
-# These check and build the whole repository: they run alone, so that no test reads half a build.
 ARCHITECTURE_TESTS = "tests/architecture"
+# These build pages and packages in the repository: they run alone, so that no test reads half a
+# build.
+BUILDING_TESTS = tuple(
+    f"{ARCHITECTURE_TESTS}/{name}.py" for name in ("test_packages", "test_pages_build", "test_run")
+)
 LINT_IMPORTS = "from importlinter.cli import lint_imports_command; lint_imports_command()"
 DESCRIPTION = """\
 Without arguments everything is checked: types, lint, format, import contracts, pages, tests on
@@ -100,14 +104,14 @@ def stages(*, long: bool) -> list[Stage]:
     """Return all stages, cheap checks first."""
     also_long = ["--long"] if long else []
     spread = ["-n", str(CORES), "--dist", "worksteal"]
-    ignored = [f"--ignore={folder}" for folder in (ARCHITECTURE_TESTS, BROWSER_TESTS)]
+    ignored = [f"--ignore={path}" for path in (BROWSER_TESTS, *BUILDING_TESTS)]
     return [
         *static_stages(),
         *frontend_stages(),
         # In parallel: tests wait for servers, pages and clocks, and waiting needs no core.
         pytest_stage("tests", *spread, "-m", "not browser", *ignored, *also_long, aloud=True),
         pytest_stage("browser tests", BROWSER_TESTS, *also_long),
-        pytest_stage("architecture", ARCHITECTURE_TESTS, *also_long, alone=True, aloud=True),
+        pytest_stage("builds", *BUILDING_TESTS, *also_long, alone=True, aloud=True),
     ]
 
 
