@@ -19,6 +19,7 @@ import {
   XRDevice,
   type XRDeviceConfig,
   XRFrame,
+  XRReferenceSpace,
   XRReferenceSpaceEvent,
   XRRigidTransform,
   XRSession,
@@ -54,6 +55,7 @@ export class EmulatedHeadset {
   };
   private readonly lost = new Set<XRSpace>();
   private isBodySeen = false;
+  private readonly restored: (() => void)[] = [];
 
   constructor(options: EmulatedOptions = {}) {
     const { bodyTracking = false, trackedSources = false, handTracking = true } = options;
@@ -76,6 +78,7 @@ export class EmulatedHeadset {
     this.installBody();
     this.installTrackedSources();
     this.installLoss();
+    this.installOffsets();
     for (const side of ["left", "right"] as const) this.installHand(side);
   }
 
@@ -203,6 +206,12 @@ export class EmulatedHeadset {
     await this.session?.end();
   }
 
+  /** Give the page its own WebXR back. */
+  uninstall(): void {
+    for (const restore of this.restored) restore();
+    this.device.uninstallRuntime();
+  }
+
   private get world() {
     return this.device[P_DEVICE].globalSpace;
   }
@@ -251,6 +260,9 @@ export class EmulatedHeadset {
     const { lost } = this;
     const isLost = (space: XRSpace): boolean => lost.size > 0 && lost.has(space);
     const viewer = this.device.viewerSpace;
+    this.restored.push(() => {
+      Object.assign(XRFrame.prototype, { getPose, getJointPose, getViewerPose, fillPoses });
+    });
     Object.assign(XRFrame.prototype, {
       getPose(this: XRFrame, ...given: Parameters<typeof getPose>) {
         return isLost(given[0]) ? null : getPose.apply(this, given);
@@ -263,6 +275,19 @@ export class EmulatedHeadset {
       },
       fillPoses(this: XRFrame, ...given: Parameters<typeof fillPoses>) {
         return [...given[0]].some(isLost) ? false : fillPoses.apply(this, given);
+      },
+    });
+  }
+
+  /** iwer takes the offset for a matrix, where WebXR and every page give a rigid transform. */
+  private installOffsets(): void {
+    const { getOffsetReferenceSpace } = XRReferenceSpace.prototype;
+    this.restored.push(() => {
+      Object.assign(XRReferenceSpace.prototype, { getOffsetReferenceSpace });
+    });
+    Object.assign(XRReferenceSpace.prototype, {
+      getOffsetReferenceSpace(this: XRReferenceSpace, offset: XRRigidTransform) {
+        return getOffsetReferenceSpace.call(this, offset.matrix);
       },
     });
   }

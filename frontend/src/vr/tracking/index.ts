@@ -1,0 +1,23 @@
+export {
+  DEVICE_PROFILES,
+  type DeviceKey,
+  deviceKeyOf,
+  type Legs,
+  legsOfBodyTracking,
+  type TrackingWay,
+  waysForFeet,
+} from "./devices";
+export { SteadyGoals } from "./steady";
+export type {
+  GoalPart,
+  GoalState,
+  HandInput,
+  KnownBody,
+  SourceKind,
+  TrackedFrame,
+  TrackedPart,
+  TrackingDevice,
+  TrackingSource,
+} from "./tracked";
+export { Room, type RoomListener } from "./webxr/room";
+export { XR_WAYS, XrSource, type XrWay } from "./webxr/source";
