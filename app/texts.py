@@ -45,6 +45,11 @@ class Words:
         return {"en": self.en, "de": self.de}[language]
 
 
+def chosen(text: Mapping[str, str], language: str) -> str:
+    """Return a study's text in a language; in the first one it has if that one is missing."""
+    return text.get(language) or next(iter(text.values()), "")
+
+
 def typescript_table(name: str, texts: Mapping[str, Words]) -> str:
     """Generate the TypeScript constants `nameEn` and `nameDe`, flat tables from key to text."""
     lines = []

@@ -30,6 +30,7 @@ from app.features.record.cockpit import router as watching
 from app.features.record.cockpit.endpoints import router as sessions
 from app.features.record.devices.endpoints import router as devices
 from app.features.record.headset.endpoints import router as headset
+from app.features.record.headset.form_endpoints import router as headset_forms
 from app.features.record.ledger.endpoints import router as participants
 from app.features.record.poses.endpoints import router as poses
 from app.features.record.preflight.endpoints import router as preflight
@@ -106,7 +107,7 @@ def _routes() -> tuple[BaseRoute, ...]:
         # Matched in this order: the most frequent requests first.
         *(tablet, sessions, watching),
         *(accounts, people, audit, studies, instruments, participants),
-        *(devices, calls, headset, alarms, suggestions, calibrations),
+        *(devices, calls, headset, headset_forms, alarms, suggestions, calibrations),
         *(analysis, exports, receipts, rights, network, captures, on_avatars, avatars),
         *(
             humanoids,

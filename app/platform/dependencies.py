@@ -138,9 +138,14 @@ def tablet_in(db: Session, request: Request, context: AppContext) -> Device:
 
 def get_headset(request: Request, context: Context) -> Device:
     """Return the paired headset; raise NotSignedIn if it is unknown or was replaced."""
-    _require_device_route(request, HEADSET)
     with context.database.reading() as db:
-        return _device(db, bearer_token(request), "headset")
+        return headset_in(db, request)
+
+
+def headset_in(db: Session, request: Request) -> Device:
+    """Return the paired headset, using a transaction that is already open."""
+    _require_device_route(request, HEADSET)
+    return _device(db, bearer_token(request), "headset")
 
 
 def _require_device_route(request: Request, who: frozenset[str]) -> None:

@@ -59,7 +59,7 @@ class Hub:
 
     _subscribers: dict[str, set[Subscription]] = field(default_factory=dict)
     _headsets: dict[str, int] = field(default_factory=dict)
-    _changing: dict[str, bool] = field(default_factory=dict)
+    _abilities: dict[str, frozenset[str]] = field(default_factory=dict)
     _heard_s: dict[str, float] = field(default_factory=dict)
     _seen: dict[str, datetime] = field(default_factory=dict)
     _signals: dict[str, Mapping[str, Any]] = field(default_factory=dict)
@@ -122,13 +122,13 @@ class Hub:
         for reader in readers:
             reader.offer("access", None)
 
-    def headset_joined(self, session_id: str, *, changes_avatar: bool = False) -> None:
+    def headset_joined(self, session_id: str, *, abilities: frozenset[str] = frozenset()) -> None:
         """Record that a headset's socket was opened.
 
-        `changes_avatar`: whether its program can change the avatar while it runs.
+        `abilities`: what its program said that it can do, by the names of its hello message.
         """
         with self._lock:
-            self._changing[session_id] = changes_avatar
+            self._abilities[session_id] = abilities
             self._headsets[session_id] = self._headsets.get(session_id, 0) + 1
 
     def headset_left(self, session_id: str) -> None:
@@ -139,7 +139,7 @@ class Hub:
                 self._headsets[session_id] = left
             else:
                 self._headsets.pop(session_id, None)
-                self._changing.pop(session_id, None)
+                self._abilities.pop(session_id, None)
                 self._heard_s.pop(session_id, None)
                 self._signals.pop(session_id, None)
 
@@ -172,10 +172,11 @@ class Hub:
         with self._lock:
             return tuple(self._headsets)
 
-    def headset_changes_avatar(self, session_id: str) -> bool | None:
-        """Return whether a session's headset can change the avatar; None if none is connected."""
+    def headset_can(self, session_id: str, ability: str) -> bool | None:
+        """Return whether a session's headset can do something; None if none is connected."""
         with self._lock:
-            return self._changing.get(session_id)
+            abilities = self._abilities.get(session_id)
+        return None if abilities is None else ability in abilities
 
     def headset_connected(self, session_id: str) -> bool:
         """Return whether the session has an open headset socket."""

@@ -194,6 +194,10 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/vr/avatar": HEADSET,
     "GET /api/vr/bodies/{content_hash}/file": HEADSET,
     "GET /api/vr/bodies/{content_hash}/binding": HEADSET,
+    "GET /api/vr/form": HEADSET,
+    "POST /api/vr/submissions": HEADSET,
+    "POST /api/vr/acknowledge": HEADSET,
+    "PUT /api/vr/language": HEADSET,
     "WEBSOCKET /api/vr/stream": HEADSET,
 }
 

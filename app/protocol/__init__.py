@@ -38,7 +38,7 @@ from app.protocol.loading import (
 from app.protocol.orders import LedgerRow, ledger_block, sequences
 from app.protocol.plan import Step, compile_plan
 from app.protocol.preregistration import ExclusionRule, Preregistration, PrimaryTest
-from app.protocol.procedure import ConsentStep
+from app.protocol.procedure import ConsentStep, FormPlace
 from app.protocol.safety import StopRule
 from app.protocol.source import Path, Plain, Source, path_text, read_source
 from app.protocol.step_kinds import (
@@ -79,6 +79,7 @@ __all__ = [
     "ConfigProblem",
     "ConsentStep",
     "ExclusionRule",
+    "FormPlace",
     "LatencyRule",
     "LedgerRow",
     "LoadedInstrument",

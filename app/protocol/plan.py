@@ -12,7 +12,14 @@ from app.protocol.avatar_changes import AvatarChanges
 from app.protocol.common import Text
 from app.protocol.conditions import Condition
 from app.protocol.errors import PlanError
-from app.protocol.procedure import ClosingStep, ConsentStep, FormStep, SetupStep, TaskPhase
+from app.protocol.procedure import (
+    ClosingStep,
+    ConsentStep,
+    FormPlace,
+    FormStep,
+    SetupStep,
+    TaskPhase,
+)
 from app.protocol.step_kinds import STEP_KINDS, StepKind, StepKindSpec
 from app.protocol.study import StudyProtocol
 from app.science.tasks import Limb
@@ -33,7 +40,7 @@ class Step:
     that the condition prescribes, None for that of the avatar's configuration. `text` is the key
     of a text of the study. `until_completions`: a practice ends early after this many tasks.
     `consent`: the requirements of a consent step in addition to its text. `avatar_changes`: how a
-    timed step changes the physics avatar while the step lasts.
+    timed step changes the physics avatar while the step lasts. `forms`: where a form is answered.
     """
 
     index: int
@@ -53,6 +60,7 @@ class Step:
     until_completions: int | None = None
     consent: ConsentStep | None = None
     avatar_changes: AvatarChanges | None = None
+    forms: FormPlace = "tablet"
 
     @property
     def spec(self) -> StepKindSpec:
@@ -109,7 +117,8 @@ def _simple(step: SetupStep | ClosingStep) -> Step:
     kind = step.step
     if isinstance(step, FormStep):
         title = _title(kind, None, step.title)
-        return Step(0, f"form.{step.instrument}", kind, title, instrument=step.instrument)
+        key = f"form.{step.instrument}"
+        return Step(0, key, kind, title, instrument=step.instrument, forms=step.forms)
     timed = {name: getattr(step, name) for name in _OF_TIMED_STEPS if hasattr(step, name)}
     limb = timed.get("limb")
     return Step(
@@ -158,6 +167,7 @@ def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Ite
             duration_s=None,
             freeze_s=None,
             instrument=phase.questionnaire,
+            forms=phase.forms,
             text=None,
             avatar_changes=None,
         )

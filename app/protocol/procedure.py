@@ -21,6 +21,15 @@ Left out of the content if not set, so that the hashes of other studies stay the
 """
 
 
+FormPlace = Literal["tablet", "headset", "oral"]
+OfTheForm = Annotated[FormPlace, Field(exclude_if=lambda value: value == "tablet")]
+"""Where the participant answers: on the tablet, inside the headset, or aloud.
+
+For answers given aloud, the experimenter asks and enters them. Left out of the content if it is the
+tablet, so that the hashes of other studies stay the same.
+"""
+
+
 class Statement(Strict):
     """One statement of a consent with its own tick box, required unless `optional`.
 
@@ -52,10 +61,11 @@ class ConsentStep(Strict):
 
 
 class FormStep(Strict):
-    """A step in which the participant fills in an instrument."""
+    """A step in which the participant answers an instrument; `forms` says where."""
 
     step: Literal["form"]
     instrument: Key
+    forms: OfTheForm = "tablet"
     title: Text | None = None
 
 
@@ -142,7 +152,8 @@ ClosingStep = Annotated[FormStep | InstructionsStep | DebriefStep, Field(discrim
 class TaskPhase(Strict):
     """One timed task. `duration_s` is active time: pauses and walks back do not count.
 
-    `preparation_s`: countdown before it; `freeze_s`: scene and body are frozen after it.
+    `preparation_s`: countdown before it; `freeze_s`: scene and body are frozen after it. `forms`:
+    where its questionnaire is answered.
     """
 
     limb: Limb
@@ -150,6 +161,7 @@ class TaskPhase(Strict):
     duration_s: Duration
     freeze_s: Pause
     questionnaire: Key
+    forms: OfTheForm = "tablet"
     text: Key | None = None
     title: Text | None = None
     questionnaire_title: Text | None = None

@@ -66,6 +66,12 @@ class Hello(Message):
     panels: bool = Field(default=False, exclude_if=lambda value: not value)
     calibrates: bool = Field(default=False, exclude_if=lambda value: not value)
 
+    @property
+    def abilities(self) -> frozenset[str]:
+        """What the client said that it can do, by the names of the fields."""
+        fields = ("fingers", "changes_avatar", "goals", "panels", "calibrates")
+        return frozenset(name for name in fields if getattr(self, name))
+
 
 PhaseEvent = Literal[
     "started",
@@ -381,9 +387,11 @@ class PanelOrder(Message):
 
     `title` and `text` are those of the current step, or the study's waiting text. `form`: the key
     of the form to fill in inside the headset, which `GET /api/vr/form` returns. `answer`: where the
-    current form is answered; null if no form is due. `headset_off`: the step takes place outside
-    the headset, so the participant should take it off. `held`: the session waits for the
-    experimenter. `called`: the participant has called, and nobody has come yet.
+    current form is answered; null if no form is due. `acknowledge`: the participant may complete
+    the step inside the headset (`POST /api/vr/acknowledge`), having read its text. `headset_off`:
+    the step takes place outside the headset, so the participant should take it off. `held`: the
+    session waits for the experimenter. `called`: the participant has called, and nobody has come
+    yet.
     """
 
     language: str
@@ -391,6 +399,7 @@ class PanelOrder(Message):
     text: str | None
     form: str | None
     answer: Literal["headset", "tablet", "oral"] | None
+    acknowledge: bool
     headset_off: bool
     held: bool
     called: bool

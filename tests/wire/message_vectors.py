@@ -270,6 +270,7 @@ STATE_WITH_A_FORM: Json = {
         "text": None,
         "form": "block1.hand.karas2020#1",
         "answer": "headset",
+        "acknowledge": False,
         "headset_off": False,
         "held": False,
         "called": False,

@@ -15,7 +15,7 @@ import { useTexts } from "./i18n";
 import classes from "./Screens.module.css";
 import { Consent } from "./screens/Consent";
 import { FormScreen } from "./screens/FormScreen";
-import { Finished, OnHold, Refused, Waiting } from "./screens/IdleScreens";
+import { AnsweredElsewhere, Finished, OnHold, Refused, Waiting } from "./screens/IdleScreens";
 import { Reading } from "./screens/Reading";
 import { useTextSize } from "./textSize";
 import { STATE_KEY } from "./useTabletState";
@@ -112,6 +112,9 @@ function Screen({ state, connected, refresh, refusal }: ScreenProps): JSX.Elemen
           refresh={refresh}
         />
       );
+    case "in_headset":
+    case "oral":
+      return <AnsweredElsewhere state={state} where={state.screen} />;
     case "finished":
       return <Finished state={state} />;
     case "refused":

@@ -231,6 +231,28 @@ ALARMS: tuple[AlarmKind, ...] = (
         of_person=True,
     ),
     AlarmKind(
+        key="stop_asked",
+        severity="critical",
+        title=Words(en="The participant wants to stop", de="Die Person möchte aufhören"),
+        remedy=Words(
+            en="Go to the participant. Then press the button or resume, or end the session.",
+            de="Gehen Sie zur Person. Drücken Sie danach den Knopf oder setzen Sie fort, oder "
+            "beenden Sie die Sitzung.",
+        ),
+        of_person=True,
+    ),
+    AlarmKind(
+        key="feet_untracked",
+        severity="warning",
+        title=Words(en="Feet not tracked", de="Füße werden nicht verfolgt"),
+        remedy=Words(
+            en="Check the trackers on the shins. Contacts of the feet are guesses until then; "
+            "repeat the phase.",
+            de="Prüfen Sie die Tracker an den Unterschenkeln. Bis dahin sind Kontakte der Füße "
+            "geraten; wiederholen Sie die Phase.",
+        ),
+    ),
+    AlarmKind(
         key="question_asked",
         severity="critical",
         title=Words(en="The participant has a question", de="Die Person hat eine Frage"),

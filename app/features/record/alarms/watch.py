@@ -14,6 +14,7 @@ from app.features.record.alarms.alarm import (
 )
 from app.features.record.alarms.watches.backlog import BacklogWatch
 from app.features.record.alarms.watches.clock import ClockWatch
+from app.features.record.alarms.watches.feet import FeetWatch
 from app.features.record.alarms.watches.silence import SilenceWatch
 from app.features.record.alarms.watches.stream import StreamWatch
 from app.wire import FINGER_STREAMS, Batch, HeadsetState, Probed, Produced, StreamName, Welcome
@@ -41,6 +42,7 @@ class QualityWatch:
     silence: SilenceWatch
     backlog: BacklogWatch
     alarms: OpenAlarms
+    feet: FeetWatch = field(default_factory=FeetWatch)
     _streams: dict[tuple[StreamName, int], StreamWatch] = field(default_factory=dict)
     _stored: dict[tuple[str, int], int] = field(default_factory=dict)
     _newest: dict[StreamName, StreamWatch] = field(default_factory=dict)
@@ -77,6 +79,7 @@ class QualityWatch:
         phase = state.phase
         running = phase is not None and phase.status == "running"
         self.silence.set_expected(now.monotonic_s, recording=state.recording, running=running)
+        self.feet.update_state(state)
 
     def batch(self, batch: Batch, now: Moment) -> tuple[Change, ...]:
         """Examine a batch of frames that has arrived, and return the changes of alarms."""
@@ -121,6 +124,7 @@ class QualityWatch:
             *self.silence.check(now.monotonic_s),
             *self.clock.check(now.monotonic_s),
             *self.backlog.check(now.monotonic_s),
+            *self.feet.check(),
         ]
         changes = (*self._report(found, now), *self.alarms.clear_expired(now))
         return CheckResult(changes, self.silence.phase_is_lost(now.monotonic_s))

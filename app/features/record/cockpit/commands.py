@@ -5,6 +5,8 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput
 from app.features.movement.avatar import configuration_by_hash
 from app.features.record.cockpit.schemas import CommandRequest
+from app.features.record.headset import feet_tracked
+from app.features.record.preflight import overrides_of
 from app.features.record.sessions import (
     Command,
     ConsentDesk,
@@ -21,6 +23,8 @@ from app.science.avatar.configuration import AvatarSettingsError
 
 _NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop", "reopen_consent")
 _STARTS = ("start", "begin_phase")
+_OF_THE_BODY = ("change_avatar", "calibrate", "shift_tracker")
+CENTIMETRES_PER_METRE = 100.0
 _ENDS = ("pause", "skip", "complete_step", "abort", "withdraw")
 """Commands that end recording, so they are accepted even when the disk is full."""
 
@@ -41,12 +45,15 @@ def command_of(
     connected = context.hub.headset_connected(session.id)
     if request.type in _NEEDS_REASON:
         return _with_reason(request, store.put("reason", reason))
+    if request.type in _OF_THE_BODY:
+        return _of_the_body(db, context, session, request, store)
     match request.type:
         case "complete_step":
             content = _completion_content(store, request)
             return c.CompleteStep(by="operator", step=request.step_index, content=content)
         case "begin_phase":
-            return c.BeginPhase(headset_connected=connected)
+            tracked = _feet_tracked(db, context, session)
+            return c.BeginPhase(headset_connected=connected, feet_tracked=tracked)
         case "materialise":
             return c.Materialise(by="operator", headset_connected=connected)
         case "pause":
@@ -56,8 +63,6 @@ def command_of(
             return c.Pause(content=store.put("reason", reason) if new else None)
         case "resume":
             return c.Resume(headset_connected=connected)
-        case "change_avatar":
-            return _avatar_change(db, context, session, request, store)
         case "note":
             return c.AddNote(content=store.put("note", _note_text(request)))
         case _:
@@ -99,6 +104,52 @@ def _with_reason(request: CommandRequest, reason: ContentRef) -> Command:
             return c.Stop(status="withdrawn", content=reason)
 
 
+def _of_the_body(
+    db: Session,
+    context: AppContext,
+    session: StudySession,
+    request: CommandRequest,
+    store: "_Store",
+) -> Command:
+    """Return the command that changes the avatar, or how the headset follows the participant."""
+    if request.type == "change_avatar":
+        return _avatar_change(db, context, session, request, store)
+    return _calibration(context, session, request, store)
+
+
+def _feet_tracked(db: Session, context: AppContext, session: StudySession) -> bool | None:
+    """Return whether the feet are measured; None if unknown, or overridden at the check of it."""
+    return (
+        None
+        if "feet" in overrides_of(db, session.id)
+        else feet_tracked(db, context.hub, session.id)
+    )
+
+
+def _calibration(
+    context: AppContext, session: StudySession, request: CommandRequest, store: "_Store"
+) -> Command:
+    """Return the command that orders a calibration or a shift; a reason is optional."""
+    reason = (request.reason or "").strip()
+    content = store.put("reason", reason) if reason else None
+    can = context.hub.headset_can(session.id, "calibrates")
+    if request.type == "calibrate":
+        return c.RequestCalibration(headset_can=can, content=content)
+    shift = request.tracker_shift
+    if shift is None:
+        raise InvalidInput(
+            "shift_tracker needs a shift",
+            value=None,
+            valid={"goal": "LeftHand", "right_cm": 1.0, "up_cm": 0.0, "back_cm": -2.0},
+            remedy="Give the goal and its shift in tracker_shift.",
+        )
+    in_cm = (shift.right_cm, shift.up_cm, shift.back_cm)
+    right_m, up_m, back_m = (round(one / CENTIMETRES_PER_METRE, 4) for one in in_cm)
+    return c.ShiftTracker(
+        goal=shift.goal, shift_m=(right_m, up_m, back_m), headset_can=can, content=content
+    )
+
+
 def _avatar_change(
     db: Session,
     context: AppContext,
@@ -131,7 +182,7 @@ def _avatar_change(
     return c.ChangeAvatar(
         changes=wanted,
         is_physics=physics is not None,
-        headset_can=context.hub.headset_changes_avatar(session.id),
+        headset_can=context.hub.headset_can(session.id, "changes_avatar"),
         content=store.put("reason", reason) if reason and is_new else None,
     )
 

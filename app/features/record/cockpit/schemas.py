@@ -1,7 +1,7 @@
 """Request and response models of the session endpoints."""
 
 from datetime import datetime
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -9,7 +9,7 @@ from app.features.record.alarms import AlarmView
 from app.features.record.ledger import Kind, Shortfall
 from app.features.record.questionnaires import StoredScores
 from app.features.record.sessions import ConsentForm, PaperConsent
-from app.protocol import AvatarChanges, StepKind
+from app.protocol import AvatarChanges, FormPlace, StepKind
 
 Status = Literal["planned", "active", "completed", "aborted", "withdrawn"]
 StepStatus = Literal["pending", "current", "done", "skipped"]
@@ -30,8 +30,13 @@ CommandType = Literal[
     "override_stop",
     "reopen_consent",
     "change_avatar",
+    "calibrate",
+    "shift_tracker",
     "note",
 ]
+GoalName = Literal["Hips", "Head", "LeftHand", "RightHand", "LeftLowerLeg", "RightLowerLeg"]
+ShiftCm = Annotated[float, Field(ge=-50.0, le=50.0, allow_inf_nan=False)]
+"""A shift in one direction, in centimetres."""
 
 NEVER_STALE: tuple[CommandType, ...] = ("note", "pause", "abort", "withdraw")
 """Commands that are accepted on any version of the session.
@@ -63,6 +68,21 @@ class Height(BaseModel):
     matched: float | None = Field(default=None, ge=0.8, le=2.5)
 
 
+class TrackerShift(BaseModel):
+    """A shift of the joint of `goal` from where its tracker says, in centimetres, in all.
+
+    To the participant's right, up, and to the back, in the axes that the part has in the T-pose.
+    Three zeros take an earlier shift back.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    goal: GoalName
+    right_cm: ShiftCm
+    up_cm: ShiftCm
+    back_cm: ShiftCm
+
+
 class CommandRequest(BaseModel):
     """An operator's command, with the version of the session that their page showed.
 
@@ -81,6 +101,7 @@ class CommandRequest(BaseModel):
     height_m: Height | None = None
     paper_consent: PaperConsent | None = None
     avatar_changes: AvatarChanges | None = None
+    tracker_shift: TrackerShift | None = None
 
     @model_validator(mode="after")
     def _on_a_version(self) -> Self:
@@ -126,6 +147,7 @@ class StepView(BaseModel):
     consent: ConsentForm | None = None
     until_completions: int | None = None
     avatar_changes: AvatarChanges | None = None
+    forms: FormPlace = "tablet"
 
 
 class CurrentView(BaseModel):
@@ -253,11 +275,39 @@ class AvatarChangesView(BaseModel):
     passing_parts: list[str]
 
 
+class GoalsView(BaseModel):
+    """How the headset knows the goals of the body, and where their poses come from."""
+
+    source: str
+    states: dict[GoalName, Literal["tracked", "inferred", "lost"]]
+
+
+class BodyCalibrationView(BaseModel):
+    """The newest calibration of the headset, and what the operator ordered since.
+
+    `at` and what was measured are null before the first calibration; `residuals_cm`: how far each
+    goal was off in the poses that test it. `wanted`: a calibration was ordered and has not been
+    reported yet. `shifts_cm`: shifts in force, to the right, up and to the back.
+    """
+
+    at: datetime | None
+    cause: str | None
+    stature_m: float | None
+    span_m: float | None
+    eye_height_m: float | None
+    residuals_cm: dict[GoalName, float]
+    sources: dict[GoalName, str]
+    notices: list[str]
+    wanted: bool
+    shifts_cm: dict[GoalName, tuple[float, float, float]]
+
+
 class SessionView(SessionSummary):
     """Everything the cockpit shows of a session.
 
     `sequence` and latencies are null if the reader is `blinded`. `alarms`: the open alarms, oldest
-    first. `avatar_changes`: null until the running avatar is changed.
+    first. `avatar_changes`: null until the running avatar is changed. `goals`: null unless the
+    headset's program reports them. `calibration`: null before the first calibration or order.
     """
 
     blinded: bool
@@ -280,6 +330,8 @@ class SessionView(SessionSummary):
     notes: list[NoteView]
     scores: list[StoredScores]
     avatar_changes: AvatarChangesView | None = None
+    goals: GoalsView | None = None
+    calibration: BodyCalibrationView | None = None
 
 
 class EventView(BaseModel):

@@ -11,6 +11,7 @@ from app.features.design.instruments import instrument_of
 from app.features.design.studies import instrument_for, protocol_of, versions_of
 from app.features.record.alarms import AlarmView, open_alarms
 from app.features.record.cockpit.avatar_changes import avatar_changes_view
+from app.features.record.cockpit.calibration import calibration_view, goals_view
 from app.features.record.cockpit.phase_views import phase_views
 from app.features.record.cockpit.schemas import (
     CurrentView,
@@ -42,6 +43,7 @@ from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession
 from app.platform.access import Caller, hidden_sessions, is_blind
 from app.platform.context import AppContext
 from app.protocol import Step, StudyProtocol
+from app.texts import chosen
 
 
 def session_view(
@@ -60,7 +62,7 @@ def session_view(
         **summary.model_dump(),
         blinded=blinded,
         study_key=protocol.key,
-        study_title=_text(protocol.title, "en"),
+        study_title=chosen(protocol.title, "en"),
         avatar=session.avatar,
         avatar_configuration_hash=session.avatar_configuration_hash,
         language=session.language,
@@ -80,6 +82,8 @@ def session_view(
         notes=_notes(db, session),
         scores=stored_scores(db, session),
         avatar_changes=avatar_changes_view(db, session),
+        goals=goals_view(db, session),
+        calibration=calibration_view(db, session),
     )
 
 
@@ -168,10 +172,6 @@ def _code(db: Session, session: StudySession) -> str:
     return db.get_one(Participant, session.participant_id).code
 
 
-def _text(text: Mapping[str, str], language: str) -> str:
-    return text.get(language) or next(iter(text.values()), "")
-
-
 def _step(
     step: Step, state: SessionState, reasons: Mapping[int, str], *, blinded: bool
 ) -> StepView:
@@ -180,7 +180,7 @@ def _step(
         index=step.index,
         key=step.key,
         kind=step.kind,
-        title=_text(step.title, "en"),
+        title=chosen(step.title, "en"),
         block=step.block,
         latency_ms=None if blinded else step.latency_ms,
         body=None if blinded else step.body,
@@ -195,6 +195,7 @@ def _step(
         consent=consent_form(step, "en"),
         until_completions=step.until_completions,
         avatar_changes=step.avatar_changes,
+        forms=step.forms,
     )
 
 
@@ -276,8 +277,8 @@ def held_view(
     labels = {score.key: score.label for score in instrument.scores}
     return HeldView(
         rule=state.held.rule,
-        instrument=_text(instrument.title, "en"),
-        score=_text(labels[rule.score], "en"),
+        instrument=chosen(instrument.title, "en"),
+        score=chosen(labels[rule.score], "en"),
         stop_at=rule.stop_at,
         is_rise=rule.change_from is not None,
     )

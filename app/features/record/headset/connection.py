@@ -16,6 +16,7 @@ from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, Withdrawn
+from app.features.record.headset.goals import newest_goals
 from app.features.record.headset.monitor import HeadsetMonitor
 from app.features.record.headset.service import headset_state, welcome
 from app.features.record.telemetry import (
@@ -40,6 +41,7 @@ from app.wire import (
     Ack,
     ClientMessages,
     Failure,
+    GoalsReport,
     HeadsetState,
     Hello,
     Message,
@@ -77,7 +79,7 @@ class HeadsetConnection:
     _loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.get_running_loop)
     _outbox: asyncio.Queue[Message] = field(default_factory=asyncio.Queue)
     _in_flight: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_IN_FLIGHT))
-    _changes_avatar: bool = False
+    _abilities: frozenset[str] = frozenset()
     _unanswered: int = 0
     _answers: deque[ProbeAnswer] = field(default_factory=lambda: deque(maxlen=MAX_PROBE_ANSWERS))
 
@@ -96,7 +98,7 @@ class HeadsetConnection:
         """Serve the socket until it closes."""
         await self._handshake()
         with self.context.hub.subscribe(self.session_id) as subscription:
-            self.context.hub.headset_joined(self.session_id, changes_avatar=self._changes_avatar)
+            self.context.hub.headset_joined(self.session_id, abilities=self._abilities)
             self.context.hub.publish(self.session_id, "session")
             tasks = [
                 asyncio.create_task(self._read()),
@@ -136,13 +138,15 @@ class HeadsetConnection:
                 valid={"type": "hello", "protocol": PROTOCOL_VERSION},
                 remedy="Update the client.",
             )
-        self._changes_avatar = hello.changes_avatar
-        answer, live = await asyncio.to_thread(self._welcome, hello)
+        self._abilities = hello.abilities
+        answer, live, goals = await asyncio.to_thread(self._welcome, hello)
         self.epoch = answer.epoch
-        self.monitor = HeadsetMonitor(self.context, self.session_id, self._submit, answer, live)
+        self.monitor = HeadsetMonitor(
+            self.context, self.session_id, self._submit, answer, live, goals
+        )
         await self._send(answer)
 
-    def _welcome(self, hello: Hello) -> tuple[Welcome, LiveTelemetry]:
+    def _welcome(self, hello: Hello) -> tuple[Welcome, LiveTelemetry, GoalsReport | None]:
         now = self.context.clock.utc_now()
         with self.context.database.writing() as db:
             answer = welcome(db, self.session_id, hello, now)
@@ -150,7 +154,8 @@ class HeadsetConnection:
         # nor in
         # the event loop.
         with self.context.database.reading() as db:
-            return answer, live_telemetry(db, self.session_id, answer.bodies or ())
+            goals = newest_goals(db, self.session_id) if hello.goals else None
+            return answer, live_telemetry(db, self.session_id, answer.bodies or ()), goals
 
     async def _read(self) -> None:
         while True:
@@ -246,7 +251,7 @@ class HeadsetConnection:
         with self.context.database.reading() as db:
             device_of_token(db, self.token, "headset")
             session = session_by_id(db, self.session_id)
-            return headset_state(db, session, changes_avatar=self._changes_avatar)
+            return headset_state(db, session, abilities=self._abilities)
 
     def _require_pairing(self) -> None:
         with self.context.database.reading() as db:

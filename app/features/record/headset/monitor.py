@@ -14,7 +14,7 @@ from app.features.record.doubts import OBSERVED
 from app.features.record.headset.poses import PoseFeed
 from app.features.record.telemetry import AlarmContent, Content, LiveTelemetry, LossContent, Outcome
 from app.platform.context import AppContext
-from app.wire import Batch, HeadsetState, Probed, Produced, Report, Welcome
+from app.wire import Batch, GoalsReport, HeadsetState, Probed, Produced, Report, Welcome
 
 PUBLISH_EVERY_S = 1.0
 
@@ -28,6 +28,7 @@ class HeadsetMonitor:
     submit: Callable[[Content], None]
     welcome: Welcome
     live: LiveTelemetry = field(default_factory=LiveTelemetry)
+    goals: GoalsReport | None = None
     poses: PoseFeed = field(init=False)
     watch: QualityWatch = field(init=False)
     _published_s: float = 0.0
@@ -38,6 +39,8 @@ class HeadsetMonitor:
         limits = WatchLimits(silent_s=self.context.settings.headset_silent_s)
         self.live.wear(self.welcome.state.phase)
         self.watch = QualityWatch.of(self.welcome, limits, self._now())
+        # A reconnected run does not repeat what it has reported.
+        self.watch.feet.goals = self.goals
         back = Condition("disconnected", "the headset is back")
         self.submit(AlarmContent(Change("cleared", back, self._now().utc)))
 
@@ -62,6 +65,8 @@ class HeadsetMonitor:
         """Process a report of the headset, such as a contact or a completed task."""
         self.live.count(report)
         self.poses.report(report)
+        if isinstance(report.body, GoalsReport):
+            self.watch.feet.goals = report.body
 
     def probed(self, reading: Probed) -> None:
         """Process a clock probe."""

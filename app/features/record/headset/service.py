@@ -15,6 +15,7 @@ from app.features.movement.avatar import configuration_by_hash
 from app.features.movement.humanoids import named_bodies
 from app.features.record.alarms import Change, Condition, store_change
 from app.features.record.doubts import OBSERVED
+from app.features.record.headset.panels import panel_order
 from app.features.record.questionnaires import answers_of
 from app.features.record.sessions import (
     AvatarInForce,
@@ -36,9 +37,11 @@ from app.models import Completion, StudySession, StudyVersion, Submission
 from app.platform.access import session_by_id
 from app.protocol import Step
 from app.science.avatar.configuration import RunningSettings
+from app.texts import chosen
 from app.wire import (
     PROTOCOL_VERSION,
     AvatarOrder,
+    CalibrationOrder,
     HeadsetState,
     Hello,
     LayerOrder,
@@ -87,12 +90,9 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
         on_disconnect=protocol.on_disconnect,
         undelayed_parts=protocol.latency.undelayed_parts,
         tasks=protocol.tasks.model_dump(mode="json"),
-        texts={
-            key: text.get(session.language) or next(iter(text.values()))
-            for key, text in protocol.texts.items()
-        },
+        texts={key: chosen(text, session.language) for key, text in protocol.texts.items()},
         positions=positions_of(db, session_id),
-        state=headset_state(db, session, changes_avatar=hello.changes_avatar),
+        state=headset_state(db, session, abilities=hello.abilities),
         bodies=protocol.bodies,
         appearance=protocol.appearance.model_dump(mode="json"),
     )
@@ -138,17 +138,19 @@ def _require_changes(db: Session, session: StudySession, hello: Hello) -> None:
 
 
 def headset_state(
-    db: Session, session: StudySession, *, changes_avatar: bool = False
+    db: Session, session: StudySession, *, abilities: frozenset[str] = frozenset()
 ) -> HeadsetState:
     """Return the state of a session as sent to its headset.
 
-    `changes_avatar`: whether the headset's client can change the avatar. Changes are sent to no
-    other client: those of earlier releases do not know the field, and accept no unknown fields.
+    `abilities`: what the headset's client can do, by the names of its hello. Changes of the avatar,
+    panels and calibrations are sent to clients that can carry them out only: those of earlier
+    releases do not know the fields, and accept no unknown ones.
     """
     state, plan = state_of(session), plan_of(db, session)
     step = None if state.current is None else plan[state.current]
     active = state.status == "active"
-    in_force = avatar_in_force(db, session) if active and changes_avatar else None
+    changes_avatar = active and "changes_avatar" in abilities
+    in_force = avatar_in_force(db, session) if changes_avatar else None
     return HeadsetState(
         version=session.version,
         status=str(state.status),
@@ -159,6 +161,20 @@ def headset_state(
         phase=_phase_order(db, session, state, plan),
         participant=participant_info(db, session),
         avatar_changes=_avatar_order(in_force),
+        panel=panel_order(db, session, state, step) if "panels" in abilities else None,
+        calibration=_calibration_order(state) if "calibrates" in abilities else None,
+    )
+
+
+def _calibration_order(state: SessionState) -> CalibrationOrder | None:
+    """Return what the operator ordered of the calibration; None if nothing, or if it is over."""
+    ordered = state.calibration
+    if ordered is None:
+        return None
+    return CalibrationOrder(
+        revision=ordered.revision,
+        calibrate=ordered.wanted,
+        shifts_m=ordered.shifts_m,
     )
 
 

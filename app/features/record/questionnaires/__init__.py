@@ -16,7 +16,7 @@ from app.features.record.questionnaires.schemas import (
     StoredScores,
     SubmissionRequest,
 )
-from app.features.record.questionnaires.service import current_administration, submit
+from app.features.record.questionnaires.service import current_administration, due_form, submit
 
 __all__ = [
     "Administration",
@@ -29,6 +29,7 @@ __all__ = [
     "answers_of",
     "correct_answer",
     "current_administration",
+    "due_form",
     "newest_corrections",
     "stored_answers",
     "stored_scores",

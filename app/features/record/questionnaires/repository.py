@@ -7,6 +7,7 @@ scores are those of the current answers. The original scores can be computed fro
 import json
 from collections.abc import Mapping
 from datetime import datetime, timedelta
+from typing import Literal
 
 from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
@@ -165,6 +166,14 @@ def _given(row: Answer) -> str | float | None:
     return row.value_number if row.value_text is None else row.value_text
 
 
+def _entered_in(mode: str) -> Literal["tablet", "headset", "operator"]:
+    match mode:
+        case "operator" | "headset":
+            return mode
+        case _:
+            return "tablet"
+
+
 def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
     rows = db.scalars(select(ScoreValue).where(ScoreValue.submission_id == submission.id))
     scores = {row.score: row.value for row in rows}
@@ -177,7 +186,7 @@ def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
         administration=submission.administration,
         step_index=submission.step_index,
         instrument=submission.instrument,
-        mode="operator" if submission.mode == "operator" else "tablet",
+        mode=_entered_in(submission.mode),
         language=submission.language,
         shown_order=submission.shown_order,
         submitted_at=submission.submitted_at,

@@ -93,7 +93,7 @@ class StoredScores(BaseModel):
     administration: str
     step_index: int
     instrument: str
-    mode: Literal["tablet", "operator"]
+    mode: Literal["tablet", "headset", "operator"]
     scores: dict[str, float | None]
     score_views: list[ScoreView]
     hints: list[AnswerHint] = []

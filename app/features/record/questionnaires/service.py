@@ -117,8 +117,9 @@ def submit(
     """Store a form, advance the session, and return the receipt.
 
     A form that is already stored returns its first receipt. `session` must be locked. Raises
-    InvalidInput with every invalid answer, NotNow if this form is not due, and RecordedConflict if
-    different answers are already stored; the new ones are then stored separately.
+    InvalidInput with every invalid answer, NotNow if this form is not due or is answered elsewhere,
+    and RecordedConflict if different answers are already stored; the new ones are then stored
+    separately. `mode`: tablet, headset or operator.
     """
     require_capture_of(db, session)
     hash_ = request_hash(request)
@@ -133,6 +134,13 @@ def submit(
             f"the form {request.administration!r} is not due now",
             value=request.administration,
             valid=due.key if due else None,
+            remedy="The answers are still on this device; tell the experimenter.",
+        )
+    if mode not in ("operator", due.step.forms):
+        raise NotNow(
+            f"this form is not answered on the {mode}",
+            value=mode,
+            valid=due.step.forms,
             remedy="The answers are still on this device; tell the experimenter.",
         )
     instrument = due.used.instrument

@@ -7,6 +7,7 @@ from app.features.record.sessions.avatar_changes import (
     changed_phases,
     changes_from,
 )
+from app.features.record.sessions.calibration import CALIBRATION, Calibration, newest_calibration
 from app.features.record.sessions.closed_sessions import (
     closed_sessions,
     erased_session,
@@ -34,8 +35,10 @@ from app.features.record.sessions.engine import (
 )
 from app.features.record.sessions.engine.commands import (
     AskQuestion,
+    AskToStop,
     ChangeAvatar,
     CloseQuestion,
+    CloseStop,
     CompleteStep,
     CorrectAnswers,
     EraseData,
@@ -48,6 +51,7 @@ from app.features.record.sessions.engine.commands import (
     RefuseConsent,
     Report,
     ReportAvatarChange,
+    ReportCalibration,
     RetractRefusal,
     SubmitForm,
 )
@@ -61,6 +65,7 @@ from app.features.record.sessions.journal import (
 from app.features.record.sessions.service import (
     MAX_TIME_SCALE,
     apply_command,
+    choose_language,
     folded,
     is_repeated,
     join,
@@ -73,12 +78,16 @@ from app.features.record.sessions.service import (
 
 __all__ = [
     "AVATAR_CHANGE",
+    "CALIBRATION",
     "MAX_TIME_SCALE",
     "AskQuestion",
+    "AskToStop",
     "AvatarInForce",
+    "Calibration",
     "ChainCheck",
     "ChangeAvatar",
     "CloseQuestion",
+    "CloseStop",
     "Command",
     "CompleteStep",
     "ConsentDesk",
@@ -99,6 +108,7 @@ __all__ = [
     "RefuseConsent",
     "Report",
     "ReportAvatarChange",
+    "ReportCalibration",
     "RetractRefusal",
     "SessionState",
     "SessionStatus",
@@ -109,6 +119,7 @@ __all__ = [
     "canonical",
     "changed_phases",
     "changes_from",
+    "choose_language",
     "closed_sessions",
     "commands",
     "consent_form",
@@ -121,6 +132,7 @@ __all__ = [
     "is_repeated",
     "join",
     "judge_again",
+    "newest_calibration",
     "not_erased",
     "plan_of",
     "protocol_of_session",

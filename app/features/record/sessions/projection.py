@@ -35,7 +35,14 @@ def project(
         case e.StopRuleOverridden():
             over = Condition("stop_rule_met", "the operator continued, with a reason on record")
             store_change(db, session.id, Change("cleared", over, now))
-        case e.ConsentRefused() | e.RefusalRetracted() | e.QuestionAsked() | e.QuestionClosed():
+        case (
+            e.ConsentRefused()
+            | e.RefusalRetracted()
+            | e.QuestionAsked()
+            | e.QuestionClosed()
+            | e.StopAsked()
+            | e.StopClosed()
+        ):
             _note_said(db, session, event, now)
         case e.StepCompleted(step=step) | e.StepSkipped(step=step):
             if plan[step].kind == "consent":
@@ -71,6 +78,12 @@ def _note_said(db: Session, session: StudySession, event: Event, now: datetime) 
             change("cleared", "consent_refused", "the operator showed the consent again")
         case e.QuestionAsked():
             change("raised", "question_asked", "The participant has a question about the text.")
+        case e.StopAsked():
+            change("raised", "stop_asked", "The participant wants to stop.")
+        case e.StopClosed(outcome="taken_back"):
+            change("cleared", "stop_asked", "The participant no longer wants to stop.")
+        case e.StopClosed():
+            change("cleared", "stop_asked", "The experimenter spoke to the participant.")
         case e.QuestionClosed(outcome="taken_back"):
             change("cleared", "question_asked", "The participant took the question back.")
         case _:

@@ -91,6 +91,17 @@ def protocol_of_session(db: Session, session: StudySession) -> StudyProtocol:
     return version_content(db, session.study_version_id).protocol
 
 
+def choose_language(db: Session, context: AppContext, session: StudySession, language: str) -> None:
+    """Switch a locked session to another language of its study; raise InvalidInput if it is not."""
+    valid = protocol_of_session(db, session).languages
+    if language not in valid:
+        raise InvalidInput(
+            f"the study has no texts in {language!r}", value=language, valid=list(valid)
+        )
+    session.language = language
+    context.hub.publish_after_commit(db, session.id)
+
+
 def state_of(session: StudySession) -> SessionState:
     """Return the current state of a session, from its snapshot."""
     return state_from_json(session.snapshot)

@@ -7,20 +7,20 @@ from fastapi import APIRouter, Request, Response
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from sqlalchemy.orm import Session
 
-from app.database import referenced_row
 from app.errors import InvalidInput, NotSignedIn
-from app.features.design.studies import protocol_of
 from app.features.record.doubts import judge_with_doubts
 from app.features.record.questionnaires import Receipt, SubmissionRequest, submit
 from app.features.record.sessions import (
     AskQuestion,
     CloseQuestion,
+    CloseStop,
     CompleteStep,
     ConsentDesk,
     ConsentGiven,
     RefuseConsent,
     RetractRefusal,
     apply_command,
+    choose_language,
     plan_of,
     state_of,
 )
@@ -33,7 +33,7 @@ from app.features.record.tablet.schemas import (
     TabletState,
 )
 from app.features.record.tablet.service import may_ask, note_help, tablet_state
-from app.models import Device, StudySession, StudyVersion
+from app.models import Device, StudySession
 from app.platform.access import session_by_id
 from app.platform.admission import TABLET_COOKIE, bearer_token
 from app.platform.context import AppContext
@@ -87,15 +87,7 @@ def put_language(
 ) -> TabletState:
     """Switch the session to another language of the study."""
     session = session_by_id(db, tablet.session_id, lock=True)
-    valid = protocol_of(referenced_row(db, StudyVersion, session.study_version_id)).languages
-    if choice.language not in valid:
-        raise InvalidInput(
-            f"the study has no texts in {choice.language!r}",
-            value=choice.language,
-            valid=list(valid),
-        )
-    session.language = choice.language
-    context.hub.publish_after_commit(db, session.id)
+    choose_language(db, context, session, choice.language)
     return tablet_state(db, session)
 
 
@@ -237,12 +229,13 @@ def _seen(context: AppContext, device_id: str) -> ServerSentEvent | None:
 
 @calls.post("/sessions/{session_id}/help/answered", status_code=204)
 def post_help_answered(session_id: str, db: Writing, context: Context, caller: SignedIn) -> None:
-    """Record that somebody went to the participant, who called or had a question.
+    """Record that somebody went to the participant, who called, had a question or wants to stop.
 
-    The tablet then shows that, too.
+    The tablet or the headset then shows that, too.
     """
     session = session_by_id(db, session_id, lock=True)
     note_help(db, context, session, "answered")
+    apply_command(db, context, session, CloseStop(outcome="answered"), actor=caller.actor)
     if may_ask(state_of(session)):
         closed = CloseQuestion(outcome="answered")
         apply_command(db, context, session, closed, actor=caller.actor)

@@ -7,13 +7,24 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.features.record.questionnaires import Administration
 from app.features.record.sessions import ConsentForm
 
-Screen = Literal["waiting", "held", "refused", "consent", "instructions", "form", "finished"]
+Screen = Literal[
+    "waiting",
+    "held",
+    "refused",
+    "consent",
+    "instructions",
+    "form",
+    "in_headset",
+    "oral",
+    "finished",
+]
 
 
 class TabletState(BaseModel):
     """The tablet's current screen; `next` is the title of the next step in the chosen language.
 
-    `held`: the participant waits for the experimenter, and the tablet cannot continue. `refused`:
+    `in_headset`, `oral`: the form that is due is answered inside the headset, or aloud. `held`: the
+    participant waits for the experimenter, and the tablet cannot continue. `refused`:
     the participant refuses to take part and the experimenter knows; `is_refused` is also true if
     the session has ended since. `is_own_text`: `text` belongs to the step, so the step's title is
     shown above it; otherwise it is the study's waiting text. `help_asked`, `question_asked`: the

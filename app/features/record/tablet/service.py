@@ -23,10 +23,16 @@ from app.features.record.sessions import (
 from app.features.record.tablet.schemas import Screen, TabletState
 from app.models import StudySession
 from app.platform.context import AppContext
-from app.protocol import Step, StudyProtocol
+from app.protocol import FormPlace, Step, StudyProtocol
+from app.texts import chosen
 
 CODE = "help_asked"
 QUESTION = "question_asked"
+_FORM_SCREENS: Mapping[FormPlace, Screen] = {
+    "tablet": "form",
+    "headset": "in_headset",
+    "oral": "oral",
+}
 _OVER = ("completed", "aborted", "withdrawn")
 _CALL_WORDS = {
     "asked": "The participant called the experimenter from the tablet.",
@@ -53,7 +59,7 @@ def tablet_state(db: Session, session: StudySession) -> TabletState:
         simulated=session.kind == "simulated",
         screen=screen,
         step_index=state.current,
-        title=None if step is None else _text(step.title, language),
+        title=None if step is None else chosen(step.title, language),
         text=_words(protocol, plan, own, state, language, screen),
         is_own_text=own is not None,
         next=None if screen in ("held", "refused") else _next(plan, state, language),
@@ -72,7 +78,9 @@ def _screen(step: Step | None, state: SessionState, *, ended: bool) -> Screen:
         return "refused"
     if state.held is not None:
         return "held"
-    return "waiting" if step is None else step.spec.screen
+    if step is None:
+        return "waiting"
+    return _FORM_SCREENS[step.forms] if step.spec.screen == "form" else step.spec.screen
 
 
 def _own_text(step: Step | None, screen: Screen) -> Step | None:
@@ -94,22 +102,18 @@ def _words(
         # The debriefing is shown at the end, but not to participants who refused to take part.
         own = next((late for late in reversed(plan) if late.kind == "debrief"), None)
     if own is not None and own.text is not None:
-        return _text(protocol.texts[own.text], language)
+        return chosen(protocol.texts[own.text], language)
     if screen == "waiting" and "waiting" in protocol.texts:
-        return _text(protocol.texts["waiting"], language)
+        return chosen(protocol.texts["waiting"], language)
     return None
 
 
 def _next(plan: Sequence[Step], state: SessionState, language: str) -> str | None:
     if state.status == "planned":
-        return _text(plan[0].title, language)
+        return chosen(plan[0].title, language)
     if state.current is None or state.current + 1 >= len(plan):
         return None
-    return _text(plan[state.current + 1].title, language)
-
-
-def _text(text: Mapping[str, str], language: str) -> str:
-    return text.get(language) or next(iter(text.values()), "")
+    return chosen(plan[state.current + 1].title, language)
 
 
 def may_ask(state: SessionState) -> bool:

@@ -7,13 +7,19 @@ from sqlalchemy import Table, func, select
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
+from app.features.record.alarms import Change, Condition, store_change
 from app.features.record.sessions import (
     AVATAR_CHANGE,
+    CALIBRATION,
+    AskToStop,
+    CloseStop,
     ContentRef,
     Materialise,
     Report,
     ReportAvatarChange,
+    ReportCalibration,
     apply_command,
+    state_of,
     store_content,
 )
 from app.features.record.telemetry.ingest import Intake
@@ -23,9 +29,13 @@ from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.wire import (
     REPORT_STREAM,
+    AddedLatencyReport,
     AvatarChangeReport,
+    CalibrationReport,
+    CallReport,
     CompletionReport,
     ContactReport,
+    GoalsReport,
     MaterialisedReport,
     PhaseReport,
     RefusedReport,
@@ -81,7 +91,7 @@ def _take(
     """Carry out a report; return the error if it is rejected."""
     body = message.body
     try:
-        if isinstance(body, ContactReport | CompletionReport):
+        if isinstance(body, ContactReport | CompletionReport | AddedLatencyReport):
             _require_phase(intake, session_id, body.phase_id)
         if isinstance(body, ContactReport):
             # By far the most frequent report; it changes no state, so it is inserted with the
@@ -89,7 +99,10 @@ def _take(
             values = body.model_dump(exclude={"kind"})
             own = {"id": new_id(), "session_id": session_id, "epoch": message.epoch}
             intake.gather(CONTACTS, {**own, **values})
-        else:
+        elif isinstance(body, GoalsReport):
+            # It changes no state; pages show it, and the pre-flight check judges it.
+            intake.context.hub.publish_after_commit(intake.db, session_id)
+        elif not isinstance(body, AddedLatencyReport):
             # Carrying out a report reads the tables, so earlier messages must be written first.
             intake.flush()
             with intake.db.begin_nested():
@@ -112,6 +125,10 @@ def _act(intake: Intake, session_id: str, message: ReportMessage, outcome: Outco
             apply_command(db, intake.context, session, command, actor="headset")
         case AvatarChangeReport():
             _act_on_avatar_change(db, intake.context, session_id, body)
+        case CalibrationReport():
+            _act_on_calibration(db, intake.context, session_id, body)
+        case CallReport():
+            _act_on_call(db, intake.context, session_id, body)
         case CompletionReport():
             _require_new(db, session_id, body)
             db.add(_completion(session_id, message.epoch, body))
@@ -135,6 +152,48 @@ def _act_on_avatar_change(
         revision=body.revision, applied=body.applied, client_t_s=body.t_s, content=content
     )
     apply_command(db, context, session, command, actor="headset")
+
+
+def _act_on_calibration(
+    db: Session, context: AppContext, session_id: str, body: CalibrationReport
+) -> None:
+    session = session_by_id(db, session_id, lock=True)
+    content = store_content(
+        db,
+        session_id=session_id,
+        kind=CALIBRATION,
+        body=body.model_dump(exclude={"kind", "t_s", "revision"}),
+        by="headset",
+        now=context.clock.utc_now(),
+    )
+    command = ReportCalibration(
+        cause=body.cause, client_t_s=body.t_s, content=content, revision=body.revision
+    )
+    apply_command(db, context, session, command, actor="headset")
+
+
+def _act_on_call(db: Session, context: AppContext, session_id: str, body: CallReport) -> None:
+    """Act on a call from inside the headset; one that is taken back was either of the two."""
+    session = session_by_id(db, session_id, lock=True)
+    if body.what == "stop":
+        apply_command(db, context, session, AskToStop(client_t_s=body.t_s), actor="headset")
+        return
+    if body.what == "taken_back":
+        closed = CloseStop(outcome="taken_back")
+        apply_command(db, context, session, closed, actor="headset")
+    asked = body.what == "help"
+    if asked and state_of(session).status not in ("planned", "active"):
+        return
+    words = (
+        "The participant called the experimenter from inside the headset."
+        if asked
+        else "The participant no longer needs help."
+    )
+    change = Change(
+        "raised" if asked else "cleared", Condition("help_asked", words), context.clock.utc_now()
+    )
+    if store_change(db, session_id, change):
+        context.hub.publish_after_commit(db, session_id)
 
 
 def _act_on_phase(

@@ -17,6 +17,7 @@ const step = (index: number, kind: Step["kind"], more: Partial<Step> = {}): Step
   status: "pending",
   attempt: 1,
   reason: null,
+  forms: "tablet",
   ...more,
 });
 

@@ -1193,9 +1193,9 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Help Answered
-         * @description Record that somebody went to the participant, who called or had a question.
+         * @description Record that somebody went to the participant, who called, had a question or wants to stop.
          *
-         *     The tablet then shows that, too.
+         *     The tablet or the headset then shows that, too.
          */
         readonly post: operations["post_help_answered_api_sessions__session_id__help_answered_post"];
         readonly delete?: never;
@@ -2453,6 +2453,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/vr/acknowledge": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Read
+         * @description Complete a step of instructions that were read inside the headset, once.
+         */
+        readonly post: operations["post_read_api_vr_acknowledge_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/vr/avatar": {
         readonly parameters: {
             readonly query?: never;
@@ -2507,6 +2527,66 @@ export interface paths {
         readonly get: operations["get_body_file_api_vr_bodies__content_hash__file_get"];
         readonly put?: never;
         readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/vr/form": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Form
+         * @description Return the form to answer inside the headset; raise NotNow if none is due there.
+         */
+        readonly get: operations["get_form_api_vr_form_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/vr/language": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        /**
+         * Put Language
+         * @description Switch the session to another language of the study.
+         */
+        readonly put: operations["put_language_api_vr_language_put"];
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/vr/submissions": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Form
+         * @description Store a filled-in form; it can be resent any number of times under the same key.
+         */
+        readonly post: operations["post_form_api_vr_submissions_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -3531,6 +3611,46 @@ export interface components {
             readonly stature_m: number;
         };
         /**
+         * BodyCalibrationView
+         * @description The newest calibration of the headset, and what the operator ordered since.
+         *
+         *     `at` and what was measured are null before the first calibration; `residuals_cm`: how far each
+         *     goal was off in the poses that test it. `wanted`: a calibration was ordered and has not been
+         *     reported yet. `shifts_cm`: shifts in force, to the right, up and to the back.
+         */
+        readonly BodyCalibrationView: {
+            /** At */
+            readonly at: string | null;
+            /** Cause */
+            readonly cause: string | null;
+            /** Eye Height M */
+            readonly eye_height_m: number | null;
+            /** Notices */
+            readonly notices: readonly string[];
+            /** Residuals Cm */
+            readonly residuals_cm: {
+                readonly [key: string]: number;
+            };
+            /** Shifts Cm */
+            readonly shifts_cm: {
+                readonly [key: string]: readonly [
+                    number,
+                    number,
+                    number
+                ];
+            };
+            /** Sources */
+            readonly sources: {
+                readonly [key: string]: string;
+            };
+            /** Span M */
+            readonly span_m: number | null;
+            /** Stature M */
+            readonly stature_m: number | null;
+            /** Wanted */
+            readonly wanted: boolean;
+        };
+        /**
          * BodyChange
          * @description A change of a body: a name, which can be given only once, a title, or confirmed terms.
          */
@@ -3921,7 +4041,7 @@ export interface components {
              * Code
              * @enum {string}
              */
-            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.ok" | "language.missing" | "language.ok";
             /**
              * Details
              * @default []
@@ -3933,7 +4053,7 @@ export interface components {
              * Key
              * @enum {string}
              */
-            readonly key: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
+            readonly key: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "feet" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
             /** Limit */
             readonly limit?: number | null;
             readonly override?: components["schemas"]["Override"] | null;
@@ -4107,11 +4227,12 @@ export interface components {
             readonly step_index?: number | null;
             /** Text */
             readonly text?: string | null;
+            readonly tracker_shift?: components["schemas"]["TrackerShift"] | null;
             /**
              * Type
              * @enum {string}
              */
-            readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "change_avatar" | "note";
+            readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "change_avatar" | "calibrate" | "shift_tracker" | "note";
         };
         /**
          * CompletionReceipt
@@ -5154,6 +5275,18 @@ export interface components {
             readonly way: ("rises" | "falls") | null;
         };
         /**
+         * GoalsView
+         * @description How the headset knows the goals of the body, and where their poses come from.
+         */
+        readonly GoalsView: {
+            /** Source */
+            readonly source: string;
+            /** States */
+            readonly states: {
+                readonly [key: string]: "tracked" | "inferred" | "lost";
+            };
+        };
+        /**
          * HalfMadeView
          * @description An unfinished file or folder: its kind, place and start time.
          *
@@ -5175,6 +5308,14 @@ export interface components {
              * Format: date-time
              */
             readonly since: string;
+        };
+        /**
+         * HeadsetLanguage
+         * @description The language of the session, which the participant may choose inside the headset.
+         */
+        readonly HeadsetLanguage: {
+            /** Language */
+            readonly language: string;
         };
         /**
          * Health
@@ -6474,7 +6615,7 @@ export interface components {
              * Found
              * @enum {string}
              */
-            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.ok" | "language.missing" | "language.ok";
             /** Reason */
             readonly reason: string;
         };
@@ -6487,7 +6628,7 @@ export interface components {
              * Check
              * @enum {string}
              */
-            readonly check: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
+            readonly check: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "feet" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
             /** Reason */
             readonly reason: string;
         };
@@ -7796,13 +7937,14 @@ export interface components {
          * @description Everything the cockpit shows of a session.
          *
          *     `sequence` and latencies are null if the reader is `blinded`. `alarms`: the open alarms, oldest
-         *     first. `avatar_changes`: null until the running avatar is changed.
+         *     first. `avatar_changes`: null until the running avatar is changed. `goals`: null unless the
+         *     headset's program reports them. `calibration`: null before the first calibration or order.
          */
         readonly SessionView: {
             /** Alarms */
             readonly alarms: readonly components["schemas"]["AlarmView"][];
             /** Allowed */
-            readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "change_avatar" | "note") | "enter_answers")[];
+            readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "change_avatar" | "calibrate" | "shift_tracker" | "note") | "enter_answers")[];
             /** Avatar */
             readonly avatar: string;
             readonly avatar_changes?: components["schemas"]["AvatarChangesView"] | null;
@@ -7810,6 +7952,7 @@ export interface components {
             readonly avatar_configuration_hash: string | null;
             /** Blinded */
             readonly blinded: boolean;
+            readonly calibration?: components["schemas"]["BodyCalibrationView"] | null;
             /**
              * Created At
              * Format: date-time
@@ -7820,6 +7963,7 @@ export interface components {
             readonly devices: readonly components["schemas"]["DeviceView"][];
             /** Ended At */
             readonly ended_at: string | null;
+            readonly goals?: components["schemas"]["GoalsView"] | null;
             readonly held: components["schemas"]["HeldView"] | null;
             /** Id */
             readonly id: string;
@@ -8061,6 +8205,14 @@ export interface components {
             readonly simulated: boolean;
         };
         /**
+         * StepRead
+         * @description A request to complete a step whose text was read inside the headset.
+         */
+        readonly StepRead: {
+            /** Step Index */
+            readonly step_index: number;
+        };
+        /**
          * StepView
          * @description A step of the procedure; fields that do not apply are null.
          */
@@ -8075,6 +8227,12 @@ export interface components {
             readonly consent?: components["schemas"]["ConsentForm"] | null;
             /** Duration S */
             readonly duration_s: number | null;
+            /**
+             * Forms
+             * @default tablet
+             * @enum {string}
+             */
+            readonly forms: "tablet" | "headset" | "oral";
             /** Freeze S */
             readonly freeze_s: number | null;
             /** Index */
@@ -8177,7 +8335,7 @@ export interface components {
              * Mode
              * @enum {string}
              */
-            readonly mode: "tablet" | "operator";
+            readonly mode: "tablet" | "headset" | "operator";
             /** Score Views */
             readonly score_views: readonly components["schemas"]["ScoreView"][];
             /** Scores */
@@ -8214,7 +8372,7 @@ export interface components {
              * Mode
              * @enum {string}
              */
-            readonly mode: "tablet" | "operator";
+            readonly mode: "tablet" | "headset" | "operator";
             /** Score Views */
             readonly score_views: readonly components["schemas"]["ScoreView"][];
             /** Scores */
@@ -8521,7 +8679,8 @@ export interface components {
          * TabletState
          * @description The tablet's current screen; `next` is the title of the next step in the chosen language.
          *
-         *     `held`: the participant waits for the experimenter, and the tablet cannot continue. `refused`:
+         *     `in_headset`, `oral`: the form that is due is answered inside the headset, or aloud. `held`: the
+         *     participant waits for the experimenter, and the tablet cannot continue. `refused`:
          *     the participant refuses to take part and the experimenter knows; `is_refused` is also true if
          *     the session has ended since. `is_own_text`: `text` belongs to the step, so the step's title is
          *     shown above it; otherwise it is the study's waiting text. `help_asked`, `question_asked`: the
@@ -8560,7 +8719,7 @@ export interface components {
              * Screen
              * @enum {string}
              */
-            readonly screen: "waiting" | "held" | "refused" | "consent" | "instructions" | "form" | "finished";
+            readonly screen: "waiting" | "held" | "refused" | "consent" | "instructions" | "form" | "in_headset" | "oral" | "finished";
             /** Session Id */
             readonly session_id: string;
             /** Simulated */
@@ -8700,6 +8859,26 @@ export interface components {
             readonly side: "left" | "right";
             /** Start Height M */
             readonly start_height_m: number;
+        };
+        /**
+         * TrackerShift
+         * @description A shift of the joint of `goal` from where its tracker says, in centimetres, in all.
+         *
+         *     To the participant's right, up, and to the back, in the axes that the part has in the T-pose.
+         *     Three zeros take an earlier shift back.
+         */
+        readonly TrackerShift: {
+            /** Back Cm */
+            readonly back_cm: number;
+            /**
+             * Goal
+             * @enum {string}
+             */
+            readonly goal: "Hips" | "Head" | "LeftHand" | "RightHand" | "LeftLowerLeg" | "RightLowerLeg";
+            /** Right Cm */
+            readonly right_cm: number;
+            /** Up Cm */
+            readonly up_cm: number;
         };
         /**
          * TracksOrigin
@@ -14630,6 +14809,46 @@ export interface operations {
             };
         };
     };
+    readonly post_read_api_vr_acknowledge_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["StepRead"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly post_avatar_api_vr_avatar_post: {
         readonly parameters: {
             readonly query?: never;
@@ -14739,6 +14958,128 @@ export interface operations {
                 };
                 content: {
                     readonly "application/octet-stream": string;
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_form_api_vr_form_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["Administration"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly put_language_api_vr_language_put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["HeadsetLanguage"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HeadsetLanguage"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_form_api_vr_submissions_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["SubmissionRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["Receipt"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

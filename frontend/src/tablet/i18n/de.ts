@@ -41,6 +41,9 @@ export const de: Record<keyof typeof en, string> = {
   "waiting.title": "Bitte einen Moment warten",
   "waiting.body":
     "Im Augenblick gibt es hier nichts zu tun. Die Versuchsleitung sagt Ihnen, wenn es weitergeht.",
+  "elsewhere.in_headset":
+    "Die Fragen stehen im Headset. Bitte setzen Sie es auf oder lassen Sie es auf.",
+  "elsewhere.oral": "Die Versuchsleitung stellt Ihnen die Fragen. Bitte antworten Sie mündlich.",
   "waiting.next": "Als Nächstes",
   "consent.title": "Einwilligung",
   "consent.go": "Ich willige ein",

@@ -37,6 +37,9 @@ export const en = {
   "waiting.title": "Please wait a moment",
   "waiting.body":
     "There is nothing to do here right now. The experimenter will tell you when to continue.",
+  "elsewhere.in_headset":
+    "The questions are shown inside the headset. Please put it on, or leave it on.",
+  "elsewhere.oral": "The experimenter asks you the questions. Please answer aloud.",
   "waiting.next": "Next",
   "consent.title": "Consent",
   "consent.go": "I agree to take part",

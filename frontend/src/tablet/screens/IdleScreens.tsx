@@ -34,6 +34,31 @@ export function Waiting({ state }: { readonly state: TabletState }): JSX.Element
   );
 }
 
+interface ElsewhereProps {
+  readonly state: TabletState;
+  readonly where: "in_headset" | "oral";
+}
+
+/** A form that the participant answers inside the headset, or aloud: say where to look. */
+export function AnsweredElsewhere({ state, where }: ElsewhereProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.calm} role="status">
+      <span className={classes.breathing}>
+        <Mark size={64} />
+      </span>
+      <h1 className={classes.calmTitle}>{state.title ?? t("waiting.title")}</h1>
+      <p className={classes.calmText}>{t(`elsewhere.${where}`)}</p>
+      {state.next !== null && (
+        <p className={classes.next}>
+          <span className={classes.nextLabel}>{t("waiting.next")}</span>
+          {state.next}
+        </p>
+      )}
+    </div>
+  );
+}
+
 /** A stop rule holds the session: calm words, no reason, and nothing to press. */
 export function OnHold(): JSX.Element {
   const { t } = useTexts();

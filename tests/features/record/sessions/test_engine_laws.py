@@ -72,6 +72,22 @@ ANYTHING: st.SearchStrategy[Command] = st.one_of(
         active_s=TIMES,
     ),
     st.builds(c.HeadsetLost, active_s=TIMES, cause=st.just("headset_lost")),
+    st.builds(c.RequestCalibration, headset_can=st.none() | st.booleans()),
+    st.builds(
+        c.ShiftTracker,
+        goal=st.sampled_from(["Head", "LeftHand"]),
+        shift_m=st.sampled_from([(0.0, 0.0, 0.0), (0.01, 0.0, -0.02)]),
+        headset_can=st.booleans(),
+    ),
+    st.builds(
+        c.ReportCalibration,
+        cause=st.sampled_from(["first", "order"]),
+        client_t_s=st.just(1.0),
+        content=st.just(WORDS),
+        revision=st.none() | st.integers(0, 60),
+    ),
+    st.builds(c.AskToStop, client_t_s=st.just(1.0)),
+    st.builds(c.CloseStop, outcome=st.sampled_from(["answered", "taken_back"])),
 )
 
 
@@ -89,6 +105,8 @@ def meant_by(name: str, state: SessionState) -> Command:
         "begin_phase": c.BeginPhase(headset_connected=True),
         "pause": c.Pause(content=WORDS),
         "resume": c.Resume(headset_connected=True),
+        "calibrate": c.RequestCalibration(headset_can=True),
+        "shift_tracker": c.ShiftTracker(goal="Head", shift_m=(0.0, 0.01, 0.0), headset_can=True),
         "override_stop": c.OverrideStop(content=WORDS),
         "reopen_consent": c.RetractRefusal(by="operator", content=WORDS),
         "redo": c.Redo(content=WORDS, step=None if timed else current - 1),
@@ -216,6 +234,7 @@ def events(kind: type[Event]) -> st.SearchStrategy[Event]:
         "int": st.integers(0),
         "float": st.floats(0, 1e6),
         "bool": st.booleans(),
+        "tuple[float, float, float]": st.tuples(*[st.floats(-1, 1)] * 3),
         "dict[str, typing.Any]": st.dictionaries(st.text(), st.text() | st.booleans()),
     }
     strategies = {}

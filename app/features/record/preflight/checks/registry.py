@@ -13,6 +13,7 @@ from app.features.record.preflight.checks.device import (
     TABLET,
     TRACKERS,
 )
+from app.features.record.preflight.checks.feet import FEET
 from app.features.record.preflight.checks.latency import LATENCY
 from app.features.record.preflight.checks.storage import DISK, STORAGE
 from app.features.record.preflight.checks.study import CONFIGURATION, INSTRUMENTS, LANGUAGE
@@ -24,6 +25,7 @@ CHECKS: tuple[PreflightCheck, ...] = (
     FRAME_RATE,
     CLOCK,
     TRACKERS,
+    FEET,
     STORAGE,
     DISK,
     LATENCY,

@@ -14,8 +14,11 @@ def allowed_commands(
     `is_physics`: whether the session has a physics avatar, which can be changed while it runs.
     """
     allowed = _of_the_session(plan, state)
-    changeable = is_physics and state.materialised and state.status is SessionStatus.ACTIVE
-    return [*allowed, "change_avatar"] if changeable and not state.erased else allowed
+    is_held = state.held is not None or state.refused_consent is not None
+    if state.status is not SessionStatus.ACTIVE or state.erased:
+        return allowed
+    changeable = ["change_avatar"] if is_physics and state.materialised else []
+    return [*allowed, *changeable, *([] if is_held else ["calibrate", "shift_tracker"])]
 
 
 def _of_the_session(plan: Sequence[Step], state: SessionState) -> list[str]:

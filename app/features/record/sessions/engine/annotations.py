@@ -6,6 +6,7 @@ added, since a text might contain the data again.
 
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
+from app.features.record.sessions.engine.calibration import decide_participant
 from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.state import SessionState, SessionStatus
 
@@ -38,7 +39,7 @@ def decide_annotation(state: SessionState, command: c.Command) -> list[e.Event] 
         case c.CorrectAnswers(submission_id=submission_id, content=content):
             return [e.AnswersCorrected(submission_id=submission_id, **_ref(content))]
         case _:
-            return None
+            return decide_participant(state, command)
 
 
 def _question(state: SessionState, command: c.AskQuestion | c.CloseQuestion) -> list[e.Event]:

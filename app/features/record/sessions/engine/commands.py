@@ -59,9 +59,14 @@ class Materialise(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class BeginPhase(Command):
-    """Prepare the phase of the current timed step."""
+    """Prepare the phase of the current timed step.
+
+    `feet_tracked`: whether the headset measures the feet; None if it does not say, or if somebody
+    decided to proceed without.
+    """
 
     headset_connected: bool
+    feet_tracked: bool | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,6 +199,51 @@ class ReportAvatarChange(Command):
     applied: bool
     client_t_s: float
     content: ContentRef | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RequestCalibration(Command):
+    """Ask the headset to calibrate again; the current step stays, a running phase is paused.
+
+    `headset_can`: whether the connected headset can do so; None if none is connected.
+    """
+
+    headset_can: bool | None
+    content: ContentRef | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShiftTracker(Command):
+    """Shift the joint of a goal from where its tracker says, by `shift_m` in all."""
+
+    goal: str
+    shift_m: tuple[float, float, float]
+    headset_can: bool | None
+    content: ContentRef | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportCalibration(Command):
+    """Record a calibration that the headset has completed; `content` has what was measured."""
+
+    cause: str
+    client_t_s: float
+    content: ContentRef
+    revision: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class AskToStop(Command):
+    """Record that the participant wants to stop, and pause a running phase."""
+
+    client_t_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class CloseStop(Command):
+    """Record that the wish to stop was `answered`, or was `taken_back` by the participant."""
+
+    outcome: str
 
 
 @dataclass(frozen=True, kw_only=True)

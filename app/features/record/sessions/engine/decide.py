@@ -9,6 +9,10 @@ from app.features.record.sessions.engine.avatar_changes import (
     changes_of_study,
     decide_avatar,
 )
+from app.features.record.sessions.engine.calibration import (
+    decide_calibration,
+    pause_running,
+)
 from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.phases import decide_headset_lost, decide_report
 from app.features.record.sessions.engine.state import (
@@ -50,8 +54,8 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
             return _decide_hold(plan, state, command)
         case c.Report():
             return _then_end(plan, state, _report(plan, state, command))
-        case c.ChangeAvatar() | c.ReportAvatarChange():
-            return decide_avatar(state, command)
+        case c.ChangeAvatar() | c.ReportAvatarChange() | c.RequestCalibration() | c.ShiftTracker():
+            return _decide_headset(state, command)
         case c.HeadsetLost():
             return decide_headset_lost(plan, state, command)
         case c.Redo():
@@ -61,6 +65,16 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
             return [*_void_running(state, command.status), ended]
         case _:
             return _then_end(plan, state, _decide_step(plan[state.current], state, command))
+
+
+def _decide_headset(
+    state: SessionState,
+    command: c.ChangeAvatar | c.ReportAvatarChange | c.RequestCalibration | c.ShiftTracker,
+) -> list[e.Event]:
+    """Decide what the headset should do with the body besides running phases."""
+    if isinstance(command, c.RequestCalibration | c.ShiftTracker):
+        return decide_calibration(state, command)
+    return decide_avatar(state, command)
 
 
 def _report(plan: Sequence[Step], state: SessionState, command: c.Report) -> list[e.Event]:
@@ -159,6 +173,7 @@ def _begin(step: Step, state: SessionState, command: c.BeginPhase) -> list[e.Eve
             remedy="Somebody else may have started it.",
         )
     _require_headset("no headset could run the phase", connected=command.headset_connected)
+    _require_feet(step, tracked=command.feet_tracked)
     prepared = e.PhasePrepared(
         step=step.index,
         phase_id=state.next_phase_id,
@@ -180,7 +195,11 @@ def _pause(state: SessionState, command: c.Pause) -> list[e.Event]:
 def _resume(state: SessionState, command: c.Resume) -> list[e.Event]:
     phase = _require_phase(state, (PhaseStatus.PAUSED,), "resume")
     _require_headset("no headset could run the phase", connected=command.headset_connected)
-    return [] if phase.resuming else [e.ResumeRequested(phase_id=phase.phase_id)]
+    if phase.resuming:
+        return []
+    # Whoever lets the phase continue has spoken to the participant.
+    closed = [e.StopClosed(outcome="answered")] if state.stop_asked else []
+    return [*closed, e.ResumeRequested(phase_id=phase.phase_id)]
 
 
 def _redo(plan: Sequence[Step], state: SessionState, command: c.Redo) -> list[e.Event]:
@@ -256,6 +275,18 @@ def _require_headset(consequence: str, *, connected: bool) -> None:
         )
 
 
+def _require_feet(step: Step, *, tracked: bool | None) -> None:
+    if step.limb == "foot" and tracked is False:
+        raise Refused(
+            "the headset does not measure the participant's feet, so contacts with them would be "
+            "guesses",
+            value="feet not tracked",
+            valid=["feet tracked"],
+            remedy="Put trackers on the shins and let the headset calibrate again, or skip the "
+            "step. To try it without, continue at the pre-flight check of the feet, with a reason.",
+        )
+
+
 def _ref(content: c.ContentRef) -> dict[str, str]:
     return {"content_id": content.content_id, "content_hash": content.content_hash}
 
@@ -293,16 +324,8 @@ def _decide_refusal(
         )
     return [
         e.ConsentRefused(step=command.step, by=command.by),
-        *_pause_for_refusal(state),
+        *pause_running(state),
     ]
-
-
-def _pause_for_refusal(state: SessionState) -> list[e.Event]:
-    """Request a pause of a running phase, since the participant refuses to take part."""
-    phase = state.phase
-    if phase is None or phase.status is not PhaseStatus.RUNNING or phase.pausing:
-        return []
-    return [e.PauseRequested(phase_id=phase.phase_id)]
 
 
 def _retract_refusal(state: SessionState, command: c.RetractRefusal) -> list[e.Event]:

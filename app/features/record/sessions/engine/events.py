@@ -269,6 +269,67 @@ class AvatarChangeReported(Event):
 
 
 @dataclass(frozen=True, kw_only=True)
+class CalibrationRequested(Event):
+    """The operator asked for a new calibration of the participant's body, in whatever step."""
+
+    type = "calibration_requested"
+    phase_id: int | None = None
+    content_id: str | None = None
+    content_hash: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackerShifted(Event):
+    """The operator shifted the joint of a goal from where its tracker says, by `shift_m` in all.
+
+    x to the right, y up, z backwards, in the axes that the part has in the T-pose. It holds until
+    the next such event of the goal, or the next calibration. `deviation`: a phase was in progress.
+    """
+
+    type = "tracker_shifted"
+    goal: str
+    shift_m: tuple[float, float, float]
+    phase_id: int | None = None
+    deviation: bool = False
+    content_id: str | None = None
+    content_hash: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CalibrationReported(Event):
+    """The headset calibrated itself to the participant's body, and uses the result from now on.
+
+    `revision`: the `seq` of the event that asked for it; None if the headset did so by itself, and
+    `cause` says why. The content has what was measured, which describes the participant.
+    """
+
+    type = "calibration_reported"
+    cause: str
+    client_t_s: float
+    content_id: str
+    content_hash: str
+    revision: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopAsked(Event):
+    """The participant wants to stop, and said so inside the headset; a running phase is paused."""
+
+    type = "stop_asked"
+    client_t_s: float
+    step: int | None = None
+    phase_id: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopClosed(Event):
+    """The wish to stop was `answered` by the experimenter, or `taken_back` by the participant."""
+
+    type = "stop_closed"
+    outcome: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class CheckOverridden(Event):
     """Somebody proceeded although the pre-flight check `check` was not green.
 
@@ -399,6 +460,11 @@ EVENT_TYPES: dict[str, type[Event]] = {
         AvatarBuilt,
         AvatarChanged,
         AvatarChangeReported,
+        CalibrationRequested,
+        TrackerShifted,
+        CalibrationReported,
+        StopAsked,
+        StopClosed,
         BlindingLifted,
         CheckOverridden,
         NoteAdded,

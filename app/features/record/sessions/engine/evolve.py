@@ -5,6 +5,7 @@ from dataclasses import replace
 from app.features.record.sessions.engine import events as e
 from app.features.record.sessions.engine.state import (
     AvatarChangesState,
+    CalibrationState,
     Hold,
     PhaseState,
     PhaseStatus,
@@ -53,6 +54,8 @@ def _applied(state: SessionState, event: e.Event) -> SessionState:
                 held=None,
                 question_open=False,
                 avatar_changes=None,
+                calibration=None,
+                stop_asked=False,
             )
         case _ if isinstance(event, MARKS):
             return _marked(state, event)
@@ -69,6 +72,11 @@ MARKS = (
     e.QuestionClosed,
     e.AvatarChanged,
     e.AvatarChangeReported,
+    e.CalibrationRequested,
+    e.TrackerShifted,
+    e.CalibrationReported,
+    e.StopAsked,
+    e.StopClosed,
     e.DataErased,
 )
 
@@ -89,6 +97,10 @@ def _marked(state: SessionState, event: e.Event) -> SessionState:
             return replace(state, question_open=isinstance(event, e.QuestionAsked))
         case e.AvatarChanged() | e.AvatarChangeReported():
             return replace(state, avatar_changes=_avatar_changed(state, event))
+        case e.CalibrationRequested() | e.TrackerShifted() | e.CalibrationReported():
+            return replace(state, calibration=_calibration(state, event))
+        case e.StopAsked() | e.StopClosed():
+            return replace(state, stop_asked=isinstance(event, e.StopAsked))
         case _:
             return replace(state, erased=True)
 
@@ -108,6 +120,26 @@ def _avatar_changed(
     return replace(
         before, reported=event.revision, applied=event.applied, content_id=event.content_id
     )
+
+
+def _calibration(
+    state: SessionState, event: e.CalibrationRequested | e.TrackerShifted | e.CalibrationReported
+) -> CalibrationState | None:
+    """Apply an order about the calibration, or a calibration that the headset has completed."""
+    before, revision = state.calibration, state.version + 1
+    match event:
+        case e.CalibrationRequested():
+            new = before or CalibrationState(revision)
+            return replace(new, revision=revision, asked=revision)
+        case e.TrackerShifted(goal=goal, shift_m=shift_m):
+            new = before or CalibrationState(revision)
+            shifts_m = {**new.shifts_m, goal: shift_m}
+            return replace(new, revision=revision, shifts_m=shifts_m)
+    if before is None or state.status is not SessionStatus.ACTIVE:
+        return before
+    # A calibration that was begun before the request does not answer it.
+    is_answer = before.asked is not None and (event.revision or 0) >= before.asked
+    return CalibrationState(revision, None if is_answer else before.asked)
 
 
 def _without_study_changes(state: SessionState) -> SessionState:

@@ -1,6 +1,6 @@
 """The state of a session: an immutable value folded from its events."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
@@ -94,6 +94,25 @@ class AvatarChangesState:
 
 
 @dataclass(frozen=True)
+class CalibrationState:
+    """What the operator has ordered of the headset's calibration.
+
+    `revision`: the number of the event since which it is in force. `asked`: the number of the
+    event that asked for a calibration, None once it was reported. `shifts_m`: goal -> shift of its
+    joint.
+    """
+
+    revision: int
+    asked: int | None = None
+    shifts_m: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+
+    @property
+    def wanted(self) -> bool:
+        """Return whether a calibration was asked for and has not been reported yet."""
+        return self.asked is not None
+
+
+@dataclass(frozen=True)
 class SessionState:
     """The state of a session. `version` is the number of events folded so far.
 
@@ -102,7 +121,8 @@ class SessionState:
     they change their mind, and also after the session has ended because of it. `question_open`: the
     participant has asked a question that has not been answered yet. `erased`: the participant's
     data were erased, and nothing more can be added. `avatar_changes`: None until the running avatar
-    is changed, and after the session has ended.
+    is changed, and after the session has ended; `calibration` likewise until something is ordered.
+    `stop_asked`: the participant wants to stop, and the experimenter has not come yet.
     """
 
     version: int
@@ -117,6 +137,8 @@ class SessionState:
     question_open: bool = False
     erased: bool = False
     avatar_changes: AvatarChangesState | None = None
+    calibration: CalibrationState | None = None
+    stop_asked: bool = False
 
     @property
     def next_phase_id(self) -> int:

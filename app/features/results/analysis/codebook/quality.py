@@ -81,8 +81,8 @@ ALARMS: tuple[Column, ...] = (
         "What is wrong.",
         "silent, disconnected, backlog, bad_values, frozen, low_frame_rate, gap, jump, "
         "clock_unknown, clock_uncertain, storage, writer_failed, background_failed, "
-        "stop_rule_met, stop_rule_near, stop_rule_unknown, help_asked, question_asked, "
-        "consent_refused, refusal_retracted, impossible, doubtful",
+        "stop_rule_met, stop_rule_near, stop_rule_unknown, help_asked, question_asked, stop_asked, "
+        "feet_untracked, consent_refused, refusal_retracted, impossible, doubtful",
     ),
     _A.text("severity", "How urgent it is.", "info, warning, critical"),
     _A.text("state", "Whether it began or ended.", "raised, cleared"),

@@ -7,7 +7,7 @@ import { Notice } from "@shared/ui/Notice";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { changeWords } from "../../avatarChanges/words";
-import { useTexts } from "../../i18n";
+import { type Key as TextKey, useTexts } from "../../i18n";
 import { isForm, isTimed, stepIcon, stepName } from "../../steps";
 import { Key } from "../../ui/Key";
 import { Shortfalls } from "../../ui/Shortfalls";
@@ -156,12 +156,12 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
   return (
     <>
       <span className={classes.waiting}>
-        <Loader size="sm" type="dots" />
-        {t(isConnected(session, "tablet") ? "step.waitingTablet" : "step.noTablet")}
+        {step.forms !== "oral" && <Loader size="sm" type="dots" />}
+        {t(whereAnswered(session, step))}
       </span>
       {session.allowed.includes("enter_answers") && (
         <Button
-          variant="default"
+          variant={step.forms === "oral" ? "filled" : "default"}
           leftSection={<Icon name="form" size={18} />}
           onClick={onEnterAnswers}
         >
@@ -170,6 +170,15 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
       )}
     </>
   );
+}
+
+/** Where the participant answers a form, and whether that can happen now. */
+function whereAnswered(session: SessionView, { forms }: Step): TextKey {
+  if (forms === "oral") return "step.askAloud";
+  if (forms === "headset") {
+    return isConnected(session, "headset") ? "step.waitingForm.headset" : "step.noHeadset";
+  }
+  return isConnected(session, "tablet") ? "step.waitingTablet" : "step.noTablet";
 }
 
 const DANGERS = ["abort", "withdraw"] as const;

@@ -45,6 +45,8 @@ export const sessionEn = {
   "step.latency": "{{latency}} added",
   "step.latencyHidden": "latency hidden",
   "step.waitingTablet": "Waiting for the tablet",
+  "step.askAloud": "Read the questions aloud and enter the answers.",
+  "step.waitingForm.headset": "Waiting for the answers in the headset",
   "step.noTablet": "No tablet is connected. Pair it under Devices.",
   "step.noHeadset": "No headset is connected. Pair it under Devices, or wake it.",
   "step.waitingHeadset": "Waiting for the headset",
@@ -129,6 +131,8 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "step.latency": "{{latency}} zusätzlich",
   "step.latencyHidden": "Latenz verdeckt",
   "step.waitingTablet": "Wartet auf das Tablet",
+  "step.askAloud": "Lesen Sie die Fragen vor und geben Sie die Antworten ein.",
+  "step.waitingForm.headset": "Warten auf die Antworten im Headset",
   "step.noTablet": "Kein Tablet ist verbunden. Koppeln Sie es unter Geräte.",
   "step.noHeadset":
     "Kein Headset ist verbunden. Koppeln Sie es unter Geräte oder wecken Sie es auf.",

@@ -2,6 +2,9 @@
 
 /** The names of the values of a study's settings. */
 const valuesEn = {
+  "value.tablet": "on the tablet",
+  "value.headset": "inside the headset",
+  "value.oral": "aloud; the experimenter enters the answers",
   "value.typed": "typed",
   "value.drawn": "drawn",
   "value.none": "none",
@@ -27,6 +30,9 @@ const valuesEn = {
 };
 
 const valuesDe: Readonly<Record<keyof typeof valuesEn, string>> = {
+  "value.tablet": "auf dem Tablet",
+  "value.headset": "im Headset",
+  "value.oral": "mündlich; die Versuchsleitung gibt die Antworten ein",
   "value.typed": "getippt",
   "value.drawn": "gezeichnet",
   "value.none": "keine",
@@ -107,6 +113,7 @@ export const fieldsEn = {
   "field.block.after": "Asked at the end of every block",
   "field.block.phases": "Tasks in every block",
   "field.limb": "Limb",
+  "field.forms": "Answered",
   "field.limb_order": "Order of the tasks",
   "field.preparation_s": "Preparation (s)",
   "field.duration_s": "Active time (s)",
@@ -240,6 +247,7 @@ export const fieldsDe: Readonly<Record<keyof typeof fieldsEn, string>> = {
   "field.block.after": "Am Ende jedes Blocks gefragt",
   "field.block.phases": "Aufgaben in jedem Block",
   "field.limb": "Körperteil",
+  "field.forms": "Beantwortet",
   "field.limb_order": "Reihenfolge der Aufgaben",
   "field.preparation_s": "Vorbereitung (s)",
   "field.duration_s": "Aktive Zeit (s)",

@@ -76,6 +76,8 @@ const PanelOrder = v.object({
   form: v.nullable(v.string()),
   /** Where the current form is answered; null if none is due. */
   answer: v.nullable(v.picklist(["headset", "tablet", "oral"])),
+  /** The participant may complete the step by `POST /api/vr/acknowledge`, having read its text. */
+  acknowledge: v.boolean(),
   headset_off: v.boolean(),
   held: v.boolean(),
   called: v.boolean(),
