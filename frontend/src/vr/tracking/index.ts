@@ -21,3 +21,4 @@ export type {
 } from "./tracked";
 export { Room, type RoomListener } from "./webxr/room";
 export { XR_WAYS, XrSource, type XrWay } from "./webxr/source";
+export { WebXrTracking } from "./webxr/tracking";

@@ -9,6 +9,7 @@ import { composed, onFloor, turned } from "../places";
 import type { TrackedFrame } from "../tracked";
 import { Room } from "./room";
 import { XrSource } from "./source";
+import { WebXrTracking } from "./tracking";
 
 const at = (x: number, y: number, z: number, rotation: Quaternion = [1, 0, 0, 0]): Place => ({
   positionM: [x, y, z],
@@ -221,5 +222,20 @@ describe("The room", () => {
     read();
     floor.dispatchEvent(Object.assign(new Event("reset"), { referenceSpace: floor }));
     expect(resets).toEqual([false]);
+  });
+
+  it("is the same in the next session of the page", async () => {
+    const { session, floor, headset, frame } = await worn();
+    const spaces: XRReferenceSpace[] = [];
+    const tracking = new WebXrTracking({ onSpace: (space) => spaces.push(space) }, "Quest 3");
+    expect(tracking.read(0, null).eyes).toBeNull();
+    tracking.begin(session, floor);
+    tracking.room?.placeSquare(square);
+    tracking.begin(session, floor);
+    expect(spaces).toHaveLength(2);
+    headset.setEyes(composed(square, at(...stood)));
+    near(frame((timeS, xr) => tracking.read(timeS, xr)).eyes, at(...stood));
+    tracking.dispose();
+    expect(frame((timeS, xr) => tracking.read(timeS, xr)).eyes).toBeNull();
   });
 });
