@@ -1,7 +1,9 @@
 """Tests of the phases' vectors, which the headset's page must reproduce too."""
 
 import json
+from typing import get_args
 
+from app.wire import PhaseEvent
 from tests.rehearsal.phase_vectors import SCRIPTS, Json, make_all, stored
 
 
@@ -17,15 +19,7 @@ def test_the_vectors_contain_every_kind_of_report_and_cause() -> None:
     phases = [report for report in reports if report["kind"] == "phase"]
     contacts = [report for report in reports if report["kind"] == "contact"]
     assert len(SCRIPTS) == len(dict(stored()))
-    assert {report["what"] for report in phases} == {
-        "started",
-        "paused",
-        "resumed",
-        "walk_back_started",
-        "walk_back_ended",
-        "time_up",
-        "ended",
-    }
+    assert {report["what"] for report in phases} == set(get_args(PhaseEvent))
     assert {report["cause"] for report in phases} == {
         "headset",
         "operator",

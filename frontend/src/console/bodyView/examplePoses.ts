@@ -3,7 +3,7 @@
  * curves drawn by hand, not anybody's movement.
  */
 
-import { BODY } from "@shared/avatar/bodyJoints";
+import { BODY } from "@shared/bodyJoints";
 import { multiply, type Quaternion } from "@shared/rotations";
 import type { PointMotion } from "@shared/stage/motion";
 import { type BodyBinding, numbersOf, Parts, type PoseSource } from "@shared/stage/skin/pose";

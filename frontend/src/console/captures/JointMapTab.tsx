@@ -2,7 +2,7 @@
 import { Button, Center, Loader, Title } from "@mantine/core";
 import type { JointMapView } from "@shared/api/captures";
 import { ApiError } from "@shared/api/request";
-import { BODY } from "@shared/avatar/bodyJoints";
+import { BODY } from "@shared/bodyJoints";
 import { dateTime } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";

@@ -1,7 +1,7 @@
 /** The skeleton in 3-D and a drawing of the body, with the joint being edited marked in both. */
 import { Center, Loader } from "@mantine/core";
 import type { Capture } from "@shared/api/captures";
-import { BODY } from "@shared/avatar/bodyJoints";
+import { BODY } from "@shared/bodyJoints";
 import { type Figure, LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
 import { Stage } from "@shared/stage/Stage";
 import { seconds } from "@shared/units";

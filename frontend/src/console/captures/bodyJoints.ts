@@ -2,7 +2,7 @@
  * The 22 joints of a human body (Unity's HumanBodyBones), their groups, and where they are on a
  * drawing.
  */
-import { BODY } from "@shared/avatar/bodyJoints";
+import { BODY } from "@shared/bodyJoints";
 import type { BodyRoles } from "@shared/stage/figure";
 
 export type Group = "trunk" | "leftArm" | "rightArm" | "leftLeg" | "rightLeg";

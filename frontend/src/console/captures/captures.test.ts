@@ -1,6 +1,6 @@
 import { readFileSync } from "node:fs";
 import { uploadUrl } from "@shared/api/captures";
-import { BODY } from "@shared/avatar/bodyJoints";
+import { BODY } from "@shared/bodyJoints";
 import { describe, expect, it } from "vitest";
 import { avatarOf, withAvatar } from "./avatars";
 import { GROUPS, placeOnBody, rolesFrom } from "./bodyJoints";

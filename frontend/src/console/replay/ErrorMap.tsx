@@ -1,6 +1,6 @@
 /** The current error of each joint: a small body, and the largest errors by name. */
 import type { JointErrors } from "@shared/api/replays";
-import { BODY } from "@shared/avatar/bodyJoints";
+import { BODY } from "@shared/bodyJoints";
 import { decimals } from "@shared/format";
 import type { Seconds } from "@shared/units";
 import type { JSX } from "react";

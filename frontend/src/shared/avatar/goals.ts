@@ -20,6 +20,16 @@ export const GOAL_PARTS = [
  */
 export type Goals = Readonly<Record<(typeof GOAL_PARTS)[number], Place | null>>;
 
+/** The goals of a moment at which nothing is tracked. */
+export const NO_GOALS: Goals = {
+  Hips: null,
+  Head: null,
+  LeftHand: null,
+  RightHand: null,
+  LeftLowerLeg: null,
+  RightLowerLeg: null,
+};
+
 const UNIT_WITHIN = 1e-3;
 
 /** Thrown for goals, or a model, that inverse kinematics cannot use. */

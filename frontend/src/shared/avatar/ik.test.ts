@@ -3,20 +3,12 @@ import { join, resolve } from "node:path";
 import type { MjModel } from "@mujoco/mujoco";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { boundedStep } from "./boundedStep";
-import { type Goals, IkError } from "./goals";
+import { type Goals, IkError, NO_GOALS } from "./goals";
 import { InverseKinematics } from "./ik";
 import { loadMujoco, type Mujoco, modelFrom } from "./mujoco";
 
 const SOURCE = resolve(import.meta.dirname, "../..");
 const BODY = resolve(SOURCE, "../../tests/vectors/avatar/body.xml");
-const NOWHERE: Goals = {
-  Hips: null,
-  Head: null,
-  LeftHand: null,
-  RightHand: null,
-  LeftLowerLeg: null,
-  RightLowerLeg: null,
-};
 
 describe("the best step within bounds", () => {
   const hessian = Float64Array.of(2, 1, 1, 2);
@@ -57,7 +49,7 @@ describe("inverse kinematics", () => {
 
   it("stays in the bent rest pose while nothing is tracked", () => {
     const solver = new InverseKinematics(mujoco, model);
-    const { anglesRad, positionErrorsM } = solver.solve(NOWHERE);
+    const { anglesRad, positionErrorsM } = solver.solve(NO_GOALS);
     const bent = solver.axisNames.filter((_, at) => anglesRad[at] !== 0);
     expect(bent.toSorted()).toEqual(
       ["LeftLowerArmY", "LeftLowerLegX", "RightLowerArmY", "RightLowerLegX"].toSorted(),
@@ -96,7 +88,9 @@ describe("inverse kinematics", () => {
     const solver = new InverseKinematics(mujoco, model);
     expect(() => solver.solve(headAt(Number.NaN))).toThrow(/Head lies at/);
     const flat = { positionM: [0, 1.6, 0], rotation: [0, 0, 0, 0] } as const;
-    expect(() => solver.solve({ ...NOWHERE, Head: flat })).toThrow(/Head is not a unit quaternion/);
+    expect(() => solver.solve({ ...NO_GOALS, Head: flat })).toThrow(
+      /Head is not a unit quaternion/,
+    );
     solver.delete();
   });
 
@@ -134,6 +128,6 @@ describe("MuJoCo's ten megabytes", () => {
 const box = (value: number): Float64Array => Float64Array.of(value, value);
 
 const headAt = (height: number): Goals => ({
-  ...NOWHERE,
+  ...NO_GOALS,
   Head: { positionM: [0, height, 0], rotation: [1, 0, 0, 0] },
 });

@@ -47,6 +47,14 @@ export interface ErrorTexts {
   readonly retry: string;
 }
 
+/** A page's own wording of errors, which it keeps under these keys. */
+export const errorTexts = (t: (key: `error.${keyof ErrorTexts}`) => string): ErrorTexts => ({
+  unreachable: t("error.unreachable"),
+  unreachableRemedy: t("error.unreachableRemedy"),
+  unexpected: t("error.unexpected"),
+  retry: t("error.retry"),
+});
+
 interface ErrorNoticeProps {
   readonly error: unknown;
   readonly texts: ErrorTexts;

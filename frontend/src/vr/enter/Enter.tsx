@@ -10,7 +10,7 @@ import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { codeFromAddress, writtenCode } from "@shared/pairingCode";
 import { CodeEntry } from "@shared/ui/CodeEntry";
 import { Mark } from "@shared/ui/Mark";
-import { ErrorNotice, type ErrorTexts, Notice } from "@shared/ui/Notice";
+import { ErrorNotice, errorTexts, Notice } from "@shared/ui/Notice";
 import { useMutation } from "@tanstack/react-query";
 import { type JSX, type ReactNode, useEffect, useRef, useState } from "react";
 import { useTexts } from "../i18n";
@@ -273,11 +273,5 @@ interface FailureProps {
 
 function Failure({ error, onRetry }: FailureProps): JSX.Element {
   const { t } = useTexts();
-  const texts: ErrorTexts = {
-    unreachable: t("error.unreachable"),
-    unreachableRemedy: t("error.unreachableRemedy"),
-    unexpected: t("error.unexpected"),
-    retry: t("error.retry"),
-  };
-  return <ErrorNotice error={error} texts={texts} onRetry={onRetry} />;
+  return <ErrorNotice error={error} texts={errorTexts(t)} onRetry={onRetry} />;
 }

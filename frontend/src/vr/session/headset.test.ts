@@ -1,3 +1,4 @@
+import { NO_GOALS } from "@shared/avatar/goals";
 import { describe, expect, it } from "vitest";
 import { Headset } from "./headset";
 import type { View } from "./ports";
@@ -38,15 +39,6 @@ async function worn({ lateBy = 0, state = STATE } = {}) {
   };
   return { telemetry, bodies, source, views, headset, draw, sleep, nowS: () => frame / RATE_HZ };
 }
-
-const NO_GOALS = {
-  Hips: null,
-  Head: null,
-  LeftHand: null,
-  RightHand: null,
-  LeftLowerLeg: null,
-  RightLowerLeg: null,
-};
 
 const phases = (telemetry: FakeTelemetry) =>
   telemetry.reports.flatMap((body) => (body.kind === "phase" ? [body] : []));

@@ -1,5 +1,6 @@
 /** Stand-ins for what surrounds the headset's loop, for its unit tests. */
 import type { Bodies, BodiesFrame, BodiesInput } from "../bodies/bodies";
+import { ORDER as PREPARING } from "../tasks/testing/orders";
 import {
   type Frames,
   type HeadsetState,
@@ -13,21 +14,7 @@ import {
 } from "../telemetry";
 import type { TrackedFrame, TrackingSource } from "../tracking/tracked";
 
-export const ORDER: PhaseOrder = {
-  phase_id: 1,
-  kind: "free_roam",
-  limb: null,
-  status: "preparing",
-  latency_ms: 0,
-  preparation_s: 0.5,
-  duration_s: 2,
-  freeze_s: 0.5,
-  active_s: 0,
-  completions: 0,
-  pausing: false,
-  resuming: false,
-  until_completions: null,
-};
+export const ORDER: PhaseOrder = { ...PREPARING, duration_s: 2, freeze_s: 0.5 };
 
 export const STATE: HeadsetState = {
   type: "state",

@@ -123,7 +123,8 @@ export function skeletonOf(statureM: number, spanM = usualSpanM(statureM)): Skel
   };
 }
 
-function restOf(name: Joint, armStretch: number): Vector {
+/** Where a joint is in the T-pose of somebody 1 m tall; with `armStretch` the arms are longer. */
+export function restOf(name: Joint, armStretch = 1): Vector {
   const centre = CENTRE[name];
   if (centre !== undefined) return centre;
   const part = name.replace(/^(Left|Right)/, "");

@@ -12,49 +12,36 @@ export const clamp = (value: number, low: number, high: number): number =>
   Math.min(Math.max(value, low), high);
 
 /** Write a b, from row `a` of one array and row `b` of another, to row `into`; they may be one. */
-export function multiplyRows(
-  first: Float64Array,
-  a: number,
-  second: Float64Array,
-  b: number,
-  result: Float64Array,
-  into: number,
-): void {
-  const aw = first[a] as number;
-  const ax = first[a + 1] as number;
-  const ay = first[a + 2] as number;
-  const az = first[a + 3] as number;
-  const bw = second[b] as number;
-  const bx = second[b + 1] as number;
-  const by = second[b + 2] as number;
-  const bz = second[b + 3] as number;
-  result[into] = aw * bw - ax * bx - ay * by - az * bz;
-  result[into + 1] = aw * bx + ax * bw + ay * bz - az * by;
-  result[into + 2] = aw * by - ax * bz + ay * bw + az * bx;
-  result[into + 3] = aw * bz + ax * by - ay * bx + az * bw;
-}
+export const multiplyRows = productWriter(1);
 
 /** Write a^-1 b: parent_from_joint for a = world_from_parent, b = world_from_joint. */
-export function inverseMultiplyRows(
+export const inverseMultiplyRows = productWriter(-1);
+
+type RowWriter = (
   first: Float64Array,
   a: number,
   second: Float64Array,
   b: number,
   result: Float64Array,
   into: number,
-): void {
-  const aw = first[a] as number;
-  const ax = first[a + 1] as number;
-  const ay = first[a + 2] as number;
-  const az = first[a + 3] as number;
-  const bw = second[b] as number;
-  const bx = second[b + 1] as number;
-  const by = second[b + 2] as number;
-  const bz = second[b + 3] as number;
-  result[into] = aw * bw + ax * bx + ay * by + az * bz;
-  result[into + 1] = aw * bx - ax * bw - ay * bz + az * by;
-  result[into + 2] = aw * by + ax * bz - ay * bw - az * bx;
-  result[into + 3] = aw * bz - ax * by + ay * bx - az * bw;
+) => void;
+
+/** `sign` is -1 to take the first quaternion's conjugate, which is its inverse. */
+function productWriter(sign: 1 | -1): RowWriter {
+  return (first, a, second, b, result, into) => {
+    const aw = first[a] as number;
+    const ax = sign * (first[a + 1] as number);
+    const ay = sign * (first[a + 2] as number);
+    const az = sign * (first[a + 3] as number);
+    const bw = second[b] as number;
+    const bx = second[b + 1] as number;
+    const by = second[b + 2] as number;
+    const bz = second[b + 3] as number;
+    result[into] = aw * bw - ax * bx - ay * by - az * bz;
+    result[into + 1] = aw * bx + ax * bw + ay * bz - az * by;
+    result[into + 2] = aw * by - ax * bz + ay * bw + az * bx;
+    result[into + 3] = aw * bz + ax * by - ay * bx + az * bw;
+  };
 }
 
 const SMALL_ANGLE_RAD = 1e-6;

@@ -3,26 +3,12 @@ import type { HeadsetState, PhaseOrder, ReportBody } from "../../telemetry";
 import type { Touches } from "../contacts";
 import type { Limb, TaskLayout } from "../layout";
 import { readLayouts } from "../testing/layouts";
+import { ORDER } from "../testing/orders";
 import type { BoxRun } from "./boxRun";
 import { type PhaseSurroundings, Phases } from "./phases";
 import { FreeRun } from "./timedRun";
 
 const FRAME_S = 1 / 64;
-const ORDER: PhaseOrder = {
-  phase_id: 1,
-  kind: "free_roam",
-  limb: null,
-  status: "preparing",
-  latency_ms: 0,
-  preparation_s: 0.5,
-  duration_s: 1,
-  freeze_s: 0.25,
-  active_s: 0,
-  completions: 0,
-  pausing: false,
-  resuming: false,
-  until_completions: null,
-};
 const HAND: PhaseOrder = { ...ORDER, kind: "task", limb: "hand", duration_s: 10 };
 const PARTS = ["RightHand", "LeftHand"];
 
