@@ -224,6 +224,7 @@ def report_text(report: RehearsalReport) -> str:
     lines += [
         f"  {phase['limb'] or '-':4}  {_latency(phase['latency_ms'])}  {phase['active_s']:6.2f} s  "
         f"{phase['completions']:2d} completions  {phase['side_contacts']:3d} side contacts"
+        + ("" if phase["body"] is None else f"  body {phase['body']}")
         + ("  voided" if phase["status"] == "voided" else "")
         for phase in phases
     ]

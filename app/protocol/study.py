@@ -1,5 +1,6 @@
 """A study as a value: everything that determines what happens to a participant."""
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, StringConstraints
@@ -147,6 +148,15 @@ class StudyProtocol(Strict):
         """
         apart = self.has_latencies_apart
         return {one.key: f"{one.latency_ms:g}" if apart else one.key for one in self.conditions}
+
+    def bodies_of(self, order: Sequence[str]) -> tuple[str | None, ...] | None:
+        """The bodies worn in an order of conditions (by key), None for the configuration's body.
+
+        None instead of all of them if latencies alone tell the conditions apart.
+        """
+        if self.has_latencies_apart:
+            return None
+        return tuple(self.condition(key).body for key in order)
 
     @property
     def design_hash(self) -> str:

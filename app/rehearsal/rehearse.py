@@ -264,6 +264,7 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
                     "kind",
                     "limb",
                     "latency_ms",
+                    "body",
                     "status",
                     "active_s",
                     "completions",

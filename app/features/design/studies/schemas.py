@@ -178,13 +178,18 @@ class EstimateRule(BaseModel):
 
 
 class TimelineView(BaseModel):
-    """The dry run of one participant's visit; `replicate` counts from 1."""
+    """The dry run of one participant's visit; `replicate` counts from 1.
+
+    `bodies`: the body worn at each of the latencies, null for that of the configuration; null
+    instead of the list where latencies tell the conditions apart.
+    """
 
     slot: int
     slots: int
     replicate: int
     sequence: list[str]
     latencies_ms: list[float]
+    bodies: list[str | None] | None = None
     steps: list[TimelineStep]
     planned_s: float
     total_s: float

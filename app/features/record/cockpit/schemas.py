@@ -239,6 +239,9 @@ class NoteView(BaseModel):
 class SessionSummary(BaseModel):
     """A row in a list of sessions.
 
+    `sequence`: the latencies of its blocks in ms. `bodies`: the body worn at each of them, null for
+    that of the configuration; null instead of the list for blinded readers, and where latencies
+    tell the conditions apart.
     `shortfalls`: the rules of its study that a completed session does not meet; it is valid if
     there are none. Null if the study has no rules, or the session is not completed.
     """
@@ -249,6 +252,7 @@ class SessionSummary(BaseModel):
     simulated: bool
     status: Status
     sequence: list[float] | None
+    bodies: list[str | None] | None = None
     study_version: int
     created_at: datetime
     started_at: datetime | None

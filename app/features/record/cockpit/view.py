@@ -151,6 +151,7 @@ def _summary(
     blinded: bool,
 ) -> SessionSummary:
     latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
+    bodies = None if blinded else protocol.bodies_of(sequence)
     return SessionSummary(
         id=session.id,
         participant_code=code,
@@ -158,6 +159,7 @@ def _summary(
         simulated=session.kind == "simulated",
         status=session.status,
         sequence=None if blinded else [latency_ms[key] for key in sequence],
+        bodies=None if bodies is None else list(bodies),
         study_version=version.number,
         created_at=session.created_at,
         started_at=session.started_at,

@@ -1,7 +1,7 @@
 """HTTP endpoint for the counterbalancing ledger."""
 
-from collections import Counter
 from collections.abc import Sequence
+from typing import TypedDict
 
 from fastapi import APIRouter
 from sqlalchemy.orm import Session
@@ -12,6 +12,7 @@ from app.features.record.ledger.service import SlotView, end_reason, ledger_of, 
 from app.models import SlotAttempt
 from app.platform.access import hidden_sessions, is_blind
 from app.platform.dependencies import Reading, SignedIn
+from app.protocol import StudyProtocol
 
 router = APIRouter(tags=["participants"])
 ENDED_EARLY = ("aborted", "withdrawn")
@@ -26,16 +27,15 @@ def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -
     study = study_by_key(db, key)
     version = newest_version(db, study)
     protocol = protocol_of(version)
-    latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
     slots = ledger_of(db, version, kind)
-    rows = [_row(db, view, latency_ms) for view in slots] or [
+    rows = [_row(db, view, protocol) for view in slots] or [
         SlotRow(
             index=index,
             block=index // max(1, len(planned_slots(protocol)) // protocol.orders.replicates),
             replicate=replicate,
-            sequence=[latency_ms[condition] for condition in sequence],
             state="free",
             attempts=[],
+            **_order(protocol, sequence),
         )
         for index, (sequence, replicate) in enumerate(planned_slots(protocol))
     ]
@@ -50,7 +50,7 @@ def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -
         started=bool(slots),
         sequences=None if blinded else _sequences(rows),
         slots=[
-            row.model_copy(update={"sequence": None})
+            row.model_copy(update={"sequence": None, "bodies": None})
             if (free and (row.state == "free" or caller.role == "operator"))
             or any(attempt.session_id in hidden for attempt in row.attempts)
             else row
@@ -59,12 +59,27 @@ def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -
     )
 
 
-def _row(db: Session, view: SlotView, latency_ms: dict[str, float]) -> SlotRow:
+class _Order(TypedDict):
+    """The fields of a row that describe an order of conditions."""
+
+    sequence: list[float]
+    bodies: list[str | None] | None
+
+
+def _order(protocol: StudyProtocol, order: Sequence[str]) -> _Order:
+    bodies = protocol.bodies_of(order)
+    return _Order(
+        sequence=[protocol.condition(key).latency_ms for key in order],
+        bodies=None if bodies is None else list(bodies),
+    )
+
+
+def _row(db: Session, view: SlotView, protocol: StudyProtocol) -> SlotRow:
     return SlotRow(
         index=view.slot.position,
         block=view.slot.block,
         replicate=view.slot.replicate,
-        sequence=[latency_ms[condition] for condition in view.slot.sequence],
+        **_order(protocol, view.slot.sequence),
         state=view.state,
         attempts=[
             AttemptView(
@@ -86,14 +101,18 @@ def _reason(db: Session, attempt: SlotAttempt) -> str | None:
 
 
 def _sequences(rows: Sequence[SlotRow]) -> list[SequenceRow]:
-    counts = Counter((tuple(row.sequence or ()), row.state) for row in rows)
-    orders = sorted({order for order, _ in counts})
+    of_order: dict[tuple[tuple[float, str], ...], list[SlotRow]] = {}
+    for row in rows:
+        latencies_ms = row.sequence or []
+        worn = [body or "" for body in row.bodies or [None] * len(latencies_ms)]
+        of_order.setdefault(tuple(zip(latencies_ms, worn, strict=True)), []).append(row)
     return [
         SequenceRow(
-            sequence=list(order),
-            completed=counts[order, "completed"],
-            open=counts[order, "open"],
-            total=sum(counts[order, state] for state in ("completed", "open", "free")),
+            sequence=own[0].sequence or [],
+            bodies=own[0].bodies,
+            completed=sum(row.state == "completed" for row in own),
+            open=sum(row.state == "open" for row in own),
+            total=len(own),
         )
-        for order in orders
+        for _, own in sorted(of_order.items())
     ]

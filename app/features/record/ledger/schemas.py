@@ -28,20 +28,29 @@ class AttemptView(BaseModel):
 
 
 class SlotRow(BaseModel):
-    """A slot of the ledger; `sequence` contains latencies in ms, and is null for blind readers."""
+    """A slot of the ledger; `sequence` contains latencies in ms, and is null for blind readers.
+
+    `bodies`: the body worn at each of them, null for that of the configuration; null instead of the
+    list for blind readers, and where latencies tell the conditions apart.
+    """
 
     index: int
     block: int
     replicate: int
     sequence: list[float] | None
+    bodies: list[str | None] | None = None
     state: Literal["free", "open", "completed"]
     attempts: list[AttemptView]
 
 
 class SequenceRow(BaseModel):
-    """An order, with how many of its slots are completed, open, and available in total."""
+    """An order, with how many of its slots are completed, open, and available in total.
+
+    `bodies` as in `SlotRow`.
+    """
 
     sequence: list[float]
+    bodies: list[str | None] | None = None
     completed: int
     open: int
     total: int

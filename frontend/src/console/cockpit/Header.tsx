@@ -47,7 +47,7 @@ export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps):
           <RevealCondition session={session} />
         </span>
       ) : (
-        <Order sequence={session.sequence} />
+        <Order sequence={session.sequence} bodies={session.bodies} />
       )}
       <div className={classes.tools} data-tour="head">
         <Feed state={feed} ended={session.ended_at !== null} />

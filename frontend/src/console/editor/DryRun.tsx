@@ -49,7 +49,7 @@ export function DryRun({ draft }: { readonly draft: Draft }): JSX.Element {
             />
             <div>
               <div className={classes.small}>{t("dryRun.order")}</div>
-              <Order sequence={timeline.latencies_ms} />
+              <Order sequence={timeline.latencies_ms} bodies={timeline.bodies} />
             </div>
             <div>
               <div className={classes.small}>{t("dryRun.replicate")}</div>
@@ -91,11 +91,30 @@ const minutes = (time: number, language: string): string => number(time / 60, la
 /** Okabe and Ito's colours, distinguishable by nearly everybody; a pattern and a word are added. */
 const HUES = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442"];
 
-/** Conditions are coloured by latency, so that the colours are the same in every order. */
+interface Level {
+  readonly condition: string;
+  readonly latencyMs: number;
+  readonly body: string | null;
+}
+
+/** The conditions by latency, so that their colours are the same in every order. */
+function levelsOf({ sequence, latencies_ms, bodies }: Timeline): readonly Level[] {
+  return sequence
+    .map((condition, at) => ({
+      condition,
+      latencyMs: latencies_ms[at] ?? 0,
+      body: bodies?.[at] ?? null,
+    }))
+    .sort(
+      (one, other) =>
+        one.latencyMs - other.latencyMs || one.condition.localeCompare(other.condition),
+    );
+}
+
 function hueOf(timeline: Timeline, step: TimelineStep): string | undefined {
-  if (step.block === null || step.latency_ms === null) return undefined;
-  const ranks = [...timeline.latencies_ms].sort((a, b) => a - b);
-  return HUES[ranks.indexOf(step.latency_ms) % HUES.length];
+  if (step.block === null) return undefined;
+  const rank = levelsOf(timeline).findIndex(({ condition }) => condition === step.condition);
+  return HUES[rank % HUES.length];
 }
 
 function Bars({ timeline }: { readonly timeline: Timeline }): JSX.Element {
@@ -133,14 +152,13 @@ function Bars({ timeline }: { readonly timeline: Timeline }): JSX.Element {
         ))}
       </div>
       <figcaption className={classes.legend}>
-        {[...timeline.latencies_ms]
-          .sort((a, b) => a - b)
-          .map((value, rank) => (
-            <span key={value}>
-              <i style={{ background: HUES[rank % HUES.length] }} />
-              {latency(milliseconds(value))}
-            </span>
-          ))}
+        {levelsOf(timeline).map(({ condition, latencyMs, body }, rank) => (
+          <span key={condition}>
+            <i style={{ background: HUES[rank % HUES.length] }} />
+            {timeline.bodies != null && `${body ?? t("order.configured")}, `}
+            {latency(milliseconds(latencyMs))}
+          </span>
+        ))}
         <span>
           <i style={{ background: "var(--line-strong)" }} />
           {t("dryRun.outside")}

@@ -56,6 +56,8 @@ export const de: Record<keyof typeof en, string> = {
   "status.aborted": "Abgebrochen",
   "status.withdrawn": "Zurückgezogen",
   "order.label": "Reihenfolge der Latenzen:",
+  "order.conditions": "Reihenfolge der Bedingungen:",
+  "order.configured": "konfigurierter Körper",
   "order.hidden": "Reihenfolge verdeckt (verblindet)",
   "studies.lead":
     "Jede Studie ist ein versioniertes Studienprotokoll mit eigenem Plan und eigenen Sitzungen.",

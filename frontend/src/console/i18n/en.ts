@@ -54,6 +54,8 @@ export const en = {
   "status.aborted": "Aborted",
   "status.withdrawn": "Withdrawn",
   "order.label": "Order of latencies:",
+  "order.conditions": "Order of conditions:",
+  "order.configured": "configured body",
   "order.hidden": "Order hidden (blinded)",
   "studies.lead": "Each study is a versioned protocol with its own ledger and sessions.",
   "studies.add": "Add a study",

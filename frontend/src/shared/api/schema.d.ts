@@ -7785,8 +7785,12 @@ export interface components {
         /**
          * SequenceRow
          * @description An order, with how many of its slots are completed, open, and available in total.
+         *
+         *     `bodies` as in `SlotRow`.
          */
         readonly SequenceRow: {
+            /** Bodies */
+            readonly bodies?: readonly (string | null)[] | null;
             /** Completed */
             readonly completed: number;
             /** Open */
@@ -7896,10 +7900,15 @@ export interface components {
          * SessionSummary
          * @description A row in a list of sessions.
          *
+         *     `sequence`: the latencies of its blocks in ms. `bodies`: the body worn at each of them, null for
+         *     that of the configuration; null instead of the list for blinded readers, and where latencies
+         *     tell the conditions apart.
          *     `shortfalls`: the rules of its study that a completed session does not meet; it is valid if
          *     there are none. Null if the study has no rules, or the session is not completed.
          */
         readonly SessionSummary: {
+            /** Bodies */
+            readonly bodies?: readonly (string | null)[] | null;
             /**
              * Created At
              * Format: date-time
@@ -7952,6 +7961,8 @@ export interface components {
             readonly avatar_configuration_hash: string | null;
             /** Blinded */
             readonly blinded: boolean;
+            /** Bodies */
+            readonly bodies?: readonly (string | null)[] | null;
             readonly calibration?: components["schemas"]["BodyCalibrationView"] | null;
             /**
              * Created At
@@ -8133,12 +8144,17 @@ export interface components {
         /**
          * SlotRow
          * @description A slot of the ledger; `sequence` contains latencies in ms, and is null for blind readers.
+         *
+         *     `bodies`: the body worn at each of them, null for that of the configuration; null instead of the
+         *     list for blind readers, and where latencies tell the conditions apart.
          */
         readonly SlotRow: {
             /** Attempts */
             readonly attempts: readonly components["schemas"]["AttemptView"][];
             /** Block */
             readonly block: number;
+            /** Bodies */
+            readonly bodies?: readonly (string | null)[] | null;
             /** Index */
             readonly index: number;
             /** Replicate */
@@ -8817,8 +8833,13 @@ export interface components {
         /**
          * TimelineView
          * @description The dry run of one participant's visit; `replicate` counts from 1.
+         *
+         *     `bodies`: the body worn at each of the latencies, null for that of the configuration; null
+         *     instead of the list where latencies tell the conditions apart.
          */
         readonly TimelineView: {
+            /** Bodies */
+            readonly bodies?: readonly (string | null)[] | null;
             /** Language */
             readonly language: string;
             /** Languages */

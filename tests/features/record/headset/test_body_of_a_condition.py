@@ -1,5 +1,7 @@
 """Tests of the body that a condition prescribes: ordered, built, recorded and exported by name."""
 
+from itertools import permutations
+
 import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select
@@ -142,3 +144,38 @@ def test_analysis_keeps_conditions_of_one_latency_apart(
         for name in ("scores", "answers", "contacts", "errors", "courses", "quality", "alarms"):
             assert material.of_body("four").tables[name] is not None
     assert orders <= {"latency_0 latency_125 latency_350"} or len(orders) == 1
+
+
+@pytest.mark.one_engine
+def test_orders_of_conditions_that_share_latencies_name_their_bodies(
+    fresh_lab: Lab, hashes: dict[str, str]
+) -> None:
+    """Ledger and sessions tell orders apart by body, where latencies do not; blinding hides both.
+
+    Six orders of three conditions, two of which add 0 ms, stay six rows of the ledger.
+    """
+    assert len(hashes) == 2
+    ledger = f"/api/studies/{KEY}/ledger"
+    client = fresh_lab.operator
+    rows = ok(client.get(ledger))["sequences"]
+    orders = {tuple(zip(row["sequence"], row["bodies"], strict=True)) for row in rows}
+    assert orders == set(permutations(((0.0, "five"), (0.0, "four"), (350.0, None))))
+    view: Json = ok(client.post(f"/api/studies/{KEY}/sessions", json={"kind": "test"}))
+    assert tuple(zip(view["sequence"], view["bodies"], strict=True)) in orders
+    taken = ok(client.get(f"{ledger}?kind=test"))["slots"]
+    assert [one["bodies"] for one in taken if one["attempts"]] == [view["bodies"]]
+    timeline = {"yaml": bodies_study(), "slot": 0}
+    assert set(ok(client.post("/api/studies/timeline", json=timeline))["bodies"]) == {
+        "five",
+        "four",
+        None,
+    }
+    blinded = bodies_study().replace("operator: false", "operator: true")
+    ok(client.post(f"/api/studies/{KEY}/versions", json={"yaml": blinded}))
+    hidden: Json = ok(client.post(f"/api/studies/{KEY}/sessions", json={"kind": "test"}))
+    assert (hidden["sequence"], hidden["bodies"]) == (None, None)
+    listed = ok(client.get(f"/api/studies/{KEY}/sessions"))
+    assert [one["bodies"] for one in listed if one["id"] == hidden["id"]] == [None]
+    found = ok(client.get(f"{ledger}?kind=test"))
+    free = [one for one in found["slots"] if one["state"] == "free"]
+    assert (found["sequences"], {one["bodies"] for one in free}) == (None, {None})

@@ -309,3 +309,20 @@ def test_a_confounding_of_limb_and_time_is_stated() -> None:
     assert "hand phase always came first" in limb_note(pd.concat([hand, foot]))
     turned = pd.concat([hand, foot, hand.assign(position=2), foot.assign(position=1)])
     assert limb_note(turned) == ""
+
+
+def test_orders_that_share_latencies_are_named_by_their_conditions() -> None:
+    """Orders of conditions that share latencies are drawn by the conditions' keys, not in ms."""
+    sessions = pd.DataFrame(
+        {
+            "participant_code": ["P-1", "P-2"],
+            "order": ["own female", "own female"],
+            "status": ["completed", "active"],
+            "valid": [True, False],
+        }
+    )
+    figure = progress_drawing(sessions, ["own female", "female own"]).as_json()
+    assert figure is not None
+    assert figure["data"][0]["x"] == ["female \u2192 own", "own \u2192 female"]
+    assert figure["layout"]["xaxis"]["title"]["text"] == "order of conditions"
+    assert " ms" not in figure["data"][0]["hovertemplate"]

@@ -143,6 +143,7 @@ def dry_run(db: Session, request: TimelineRequest) -> TimelineView:
         request.language if request.language in protocol.languages else (protocol.languages[0])
     )
     plan = compile_plan(protocol, row.sequence, block_limb_flip=slot % 2 == 1)
+    bodies = protocol.bodies_of(row.sequence)
     steps = timeline(protocol, plan, parsed_instruments(db), language=language)
     return TimelineView(
         slot=slot,
@@ -150,6 +151,7 @@ def dry_run(db: Session, request: TimelineRequest) -> TimelineView:
         replicate=row.replicate,
         sequence=list(row.sequence),
         latencies_ms=[protocol.condition(key).latency_ms for key in row.sequence],
+        bodies=None if bodies is None else list(bodies),
         steps=[_step(protocol, step, language) for step in steps],
         planned_s=planned_s(steps),
         total_s=total_s(steps),

@@ -32,15 +32,21 @@ def progress_drawing(
 ) -> Drawing:
     """Draw the number of sessions by order and status, from all rows of the table of sessions.
 
-    `orders` are those of the design ("0 125 350"). `blinded` merges all orders, because the order
-    of an open session must not be revealed.
+    `orders` are those of the design: latencies ("0 125 350"), or the keys of conditions if some
+    share latencies. `blinded` merges all orders, because the order of an open session must not be
+    revealed.
     """
     n = participants(sessions)
     if sessions.empty:
         return Drawing(KEY, TITLE, "", 0, empty="No session has been created yet.")
     own = pd.Series("all orders", sessions.index) if blinded else sessions["order"]
     status = _statuses(sessions)
-    names = ["all orders"] if blinded else sorted({*orders, *own}, key=_as_numbers)
+    names = (
+        ["all orders"]
+        if blinded
+        else sorted({*orders, *own}, key=lambda name: (_latencies_ms(name), name))
+    )
+    in_ms = not blinded and all(map(_latencies_ms, names))
     figure = new_figure()
     for state, (statuses, colour, pattern) in _STATES.items():
         counts = own[status.isin(statuses)].value_counts()
@@ -53,11 +59,12 @@ def progress_drawing(
                 y=[int(counts.get(name, 0)) or None for name in names],
                 name=state,
                 marker=hatched(colour, pattern),
-                hovertemplate=f"%{{x}} ms: %{{y}} {state}<extra></extra>",
+                hovertemplate=f"%{{x}}{' ms' if in_ms else ''}: %{{y}} {state}<extra></extra>",
             )
         )
     figure.update_layout(barmode="stack")
-    figure.update_xaxes(title_text="order of added latencies (ms)", type="category")
+    axis = "order of added latencies (ms)" if in_ms else "order of conditions"
+    figure.update_xaxes(title_text=axis, type="category")
     figure.update_yaxes(title_text="sessions (count)", rangemode="tozero")
     if own.value_counts().max() <= FEW:
         # By default, plotly would label fractions of sessions.
@@ -120,5 +127,9 @@ def progress_time_drawing(sessions: pd.DataFrame, planned: int) -> Drawing:
     return drawn(TIME_KEY, TIME_TITLE, caption, n, figure, rows)
 
 
-def _as_numbers(order: str) -> tuple[float, ...]:
-    return tuple(float(part) for part in order.split())
+def _latencies_ms(order: str) -> tuple[float, ...]:
+    """Return the latencies of an order; none if it names conditions that share latencies."""
+    try:
+        return tuple(float(part) for part in order.split())
+    except ValueError:
+        return ()

@@ -5,6 +5,9 @@ import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import classes from "./DashboardTab.module.css";
 
+/** The name of the configuration's body among the choices (`OWN_BODY` in `material.py`). */
+const OWN_BODY = "configuration";
+
 interface FilterBarProps {
   readonly filter: Filter;
   readonly choices: FilterChoices;
@@ -56,7 +59,10 @@ export function FilterBar({ filter, choices, onChange }: FilterBarProps): JSX.El
       {choices.bodies.length > 0 && (
         <Select
           label={t("figures.body")}
-          data={[...choices.bodies]}
+          data={choices.bodies.map((value) => ({
+            value,
+            label: value === OWN_BODY ? t("order.configured") : value,
+          }))}
           value={filter.body ?? choices.bodies[0] ?? null}
           onChange={(body) => change({ body })}
           className={classes.short ?? ""}

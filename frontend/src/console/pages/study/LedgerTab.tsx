@@ -7,7 +7,7 @@ import { ledgerQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
-import { Order } from "../../ui/Order";
+import { Order, orderKey } from "../../ui/Order";
 import { SlotMark } from "../../ui/SlotMark";
 import classes from "./LedgerTab.module.css";
 import { SlotCell } from "./SlotCell";
@@ -61,7 +61,7 @@ function Blinded({ ledger }: { readonly ledger: Ledger }): JSX.Element {
               {t("ledger.slotNumber", { number: slot.index + 1 })}
             </span>
             <SlotCell slot={slot} next={slot.index === next} />
-            {slot.sequence !== null && <Order sequence={slot.sequence} />}
+            {slot.sequence !== null && <Order sequence={slot.sequence} bodies={slot.bodies} />}
           </li>
         ))}
       </ol>
@@ -94,9 +94,9 @@ function Grid({ grid, ledger }: GridProps): JSX.Element {
         </thead>
         <tbody>
           {rows.map((row) => (
-            <tr key={row.sequence.join("-")}>
+            <tr key={orderKey(row)}>
               <th scope="row">
-                <Order sequence={row.sequence} />
+                <Order sequence={row.sequence} bodies={row.bodies} />
               </th>
               {row.slots.map((slot, column) => (
                 <td key={columns[column]}>
@@ -141,6 +141,7 @@ const CELLS = { completed: classes.cellDone, open: classes.cellOpen, free: "" } 
 /** A row of the ledger's grid, which has a row for every order and a column for every replicate. */
 interface LedgerRow {
   readonly sequence: readonly number[];
+  readonly bodies: readonly (string | null)[] | null;
   /** One slot for each column; undefined if a replicate does not have such an order (yet). */
   readonly slots: readonly (Slot | undefined)[];
 }
@@ -155,11 +156,12 @@ export function arrange(ledger: Ledger): LedgerGrid | null {
   const { sequences } = ledger;
   if (sequences === null || ledger.slots.length === 0) return null;
   const columns = [...new Set(ledger.slots.map((slot) => slot.replicate))].sort((a, b) => a - b);
-  const place = (slot: Slot): string => `${slot.sequence?.join("-")}/${slot.replicate}`;
+  const place = (slot: Slot): string => `${orderKey(slot)}/${slot.replicate}`;
   const slots = new Map(ledger.slots.map((slot) => [place(slot), slot]));
-  const rows = sequences.map(({ sequence }) => ({
-    sequence,
-    slots: columns.map((column) => slots.get(`${sequence.join("-")}/${column}`)),
+  const rows = sequences.map((order) => ({
+    sequence: order.sequence,
+    bodies: order.bodies ?? null,
+    slots: columns.map((column) => slots.get(`${orderKey(order)}/${column}`)),
   }));
   return { rows, columns };
 }

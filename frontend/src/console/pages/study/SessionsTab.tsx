@@ -116,7 +116,11 @@ function Row({ session }: { readonly session: SessionSummary }): JSX.Element {
         <KindBadge kind={session.kind} />
       </Table.Td>
       <Table.Td>
-        {session.sequence === null ? t("order.hidden") : <Order sequence={session.sequence} />}
+        {session.sequence === null ? (
+          t("order.hidden")
+        ) : (
+          <Order sequence={session.sequence} bodies={session.bodies} />
+        )}
       </Table.Td>
       <Table.Td>
         {session.started_at === null

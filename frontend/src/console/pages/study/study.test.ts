@@ -42,6 +42,20 @@ describe("the ledger as a grid", () => {
     ]);
   });
 
+  it("tells orders of the same latencies apart by their bodies", () => {
+    const bodies = [
+      ["female", null],
+      [null, "female"],
+    ];
+    const rows = bodies.map((own) => ({ sequence: [0, 0], bodies: own }));
+    const grid = arrange({
+      ...ledger,
+      sequences: rows.map((row) => ({ ...row, completed: 0, open: 0, total: 1 })),
+      slots: rows.map((row, at) => ({ ...slot(at, 0, 1, "free"), ...row })),
+    });
+    expect(grid?.rows.map((row) => row.slots.map((cell) => cell?.index))).toEqual([[0], [1]]);
+  });
+
   it("is null if the orders are hidden or nothing is drawn yet", () => {
     expect(arrange({ ...ledger, sequences: null })).toBeNull();
     expect(arrange({ ...ledger, slots: [] })).toBeNull();
