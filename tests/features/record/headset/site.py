@@ -123,11 +123,11 @@ class Site:
             yield socket
 
     @contextmanager
-    def headset(self, token: str, epoch: int | None = None) -> Iterator[Headset]:
+    def headset(self, token: str, epoch: int | None = None, **hello: Any) -> Iterator[Headset]:
         """Open a headset socket that has sent its hello and been welcomed."""
         with self.socket(token) as socket:
             headset = Headset(socket)
-            headset.say({**HELLO, "epoch": epoch})
+            headset.say({**HELLO, "epoch": epoch, **hello})
             headset.welcome = headset.hear("welcome")
             yield headset
 
