@@ -13,6 +13,9 @@ const repository = resolve(import.meta.dirname, "..");
 /** Every folder of `src` with an index.html is a page of its own: console, tablet, ... */
 const pages = readdirSync(source).filter((name) => existsSync(resolve(source, name, "index.html")));
 
+/** Workers that run WebAssembly: the server gives their folder a policy that allows it. */
+const WASM = new Set(["codeWorker", "meshoptWorker", "textureWorker", "bodiesWorker"]);
+
 /** Serve the console at `/` and the tablet at `/tablet`, as the server does. */
 function servePagesLikeTheServer(): Plugin {
   return {
@@ -76,7 +79,12 @@ export default defineConfig({
       },
     },
   },
-  // Workers that run WebAssembly: the server gives this folder a policy that allows it.
-  worker: { rolldownOptions: { output: { entryFileNames: "assets/wasm/[name]-[hash].js" } } },
+  worker: {
+    rolldownOptions: {
+      output: {
+        entryFileNames: ({ name }) => `assets/${WASM.has(name) ? "wasm/" : ""}[name]-[hash].js`,
+      },
+    },
+  },
   server: { port: 5173, fs: { allow: [repository] }, proxy: { "/api": proxyToServer } },
 });

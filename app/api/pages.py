@@ -5,9 +5,10 @@ Tablets and headsets fetch them over the lab's wireless network, where a megabyt
 
 import asyncio
 import gzip
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from fastapi import APIRouter, FastAPI
@@ -17,7 +18,13 @@ from starlette.datastructures import Headers
 from starlette.types import Scope
 
 # Pictures and fonts are already compressed, and a small file gains nothing.
-_WORTH_IT = ("text/javascript", "text/css", "image/svg+xml", "application/json")
+_WORTH_IT = (
+    "text/javascript",
+    "text/css",
+    "image/svg+xml",
+    "application/json",
+    "application/wasm",
+)
 _SMALL_BYTES = 1024
 _LEVEL = 6
 PAGES = {"/": "console/index.html", "/tablet": "tablet/index.html", "/vr": "vr/index.html"}
@@ -27,8 +34,13 @@ TABLET_WORKER = "/tablet-worker.js"
 # so pages need no permission to run WebAssembly. These workers may fetch nothing from anywhere.
 WASM_WORKERS = "wasm/"
 WASM_POLICY = "default-src 'none'; script-src 'self' blob: 'wasm-unsafe-eval'"
-# The transcoder of KTX2 textures (Basis Universal) also makes functions from text when it starts.
-TEXTURE_WORKER = "wasm/textureWorker-"
+# The transcoder of KTX2 textures (Basis Universal) and MuJoCo's bindings also make functions from
+# text when they start. Their workers alone may do so; no page may.
+WORKERS_THAT_EVALUATE = ("wasm/textureWorker-", "wasm/bodiesWorker-")
+# In an isolated page, the headset shares memory with the worker that simulates the bodies. All that
+# such a page loads comes from this server, and its workers must be sent with the same policy.
+ISOLATED = {"/vr"}
+ISOLATION: Mapping[str, str] = MappingProxyType({"cross-origin-embedder-policy": "require-corp"})
 _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reembody</title>
 <h1>The pages are not built yet</h1><p>The interface under /api works. Start the server with
 <code>./run</code>, which builds the pages.</p></html>"""
@@ -37,7 +49,8 @@ _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reem
 class Assets(StaticFiles):
     """The static files whose names contain a hash of the content, so that browsers may cache them.
 
-    A file is compressed once and stays in memory: about a megabyte for all pages together.
+    A file is compressed once and stays in memory: about a megabyte for all pages together,
+    and 2.6 for MuJoCo's WebAssembly.
     """
 
     def file_response(self, *args: Any, **kwargs: Any) -> Response:
@@ -66,13 +79,13 @@ class Assets(StaticFiles):
         return Response(body, headers=headers, media_type=response.media_type)
 
 
-def _policy(path: str) -> dict[str, str]:
-    """Return the policy of a worker for WebAssembly; nothing for any other file."""
+def _policy(path: str) -> Mapping[str, str]:
+    """Return the headers of a file: those of workers in isolated pages, and of WebAssembly's."""
     path = path.replace("\\", "/")  # Starlette gives paths with the system's separators.
     if not path.startswith(WASM_WORKERS):
-        return {}
-    more = " 'unsafe-eval'" if path.startswith(TEXTURE_WORKER) else ""
-    return {"content-security-policy": WASM_POLICY + more}
+        return ISOLATION
+    more = " 'unsafe-eval'" if path.startswith(WORKERS_THAT_EVALUATE) else ""
+    return {**ISOLATION, "content-security-policy": WASM_POLICY + more}
 
 
 def _is_worth_it(response: FileResponse) -> bool:
@@ -96,7 +109,8 @@ def install_pages(app: FastAPI, static: Path) -> None:
     """Serve each page at its address, and the assets under their hashed names."""
     router = APIRouter(include_in_schema=False)
     for address, file in PAGES.items():
-        router.add_api_route(address, _page(static / file), methods=["GET"])
+        more = ISOLATION if address in ISOLATED else {}
+        router.add_api_route(address, _page(static / file, more), methods=["GET"])
     worker = _worker(static / TABLET_WORKER[1:])
     router.add_api_route(TABLET_WORKER, worker, methods=["GET"])
     app.include_router(router)
@@ -104,11 +118,11 @@ def install_pages(app: FastAPI, static: Path) -> None:
         app.mount("/assets", Assets(directory=static / "assets"), name="assets")
 
 
-def _page(file: Path) -> Callable[[], Response]:
+def _page(file: Path, more_headers: Mapping[str, str]) -> Callable[[], Response]:
     def serve() -> Response:
         if not file.is_file():
             return HTMLResponse(_NOT_BUILT, status_code=503)
-        return FileResponse(file, headers={"cache-control": "no-cache"})
+        return FileResponse(file, headers={"cache-control": "no-cache", **more_headers})
 
     return serve
 

@@ -7,7 +7,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.api.pages import WASM_POLICY, Assets
+from app.api.pages import WASM_POLICY, Assets, install_pages
 
 SCRIPT = "export const words = 'a script of some length';\n" * 100
 
@@ -53,7 +53,7 @@ def test_small_and_compressed_files_are_not_compressed(client: TestClient, name:
 
 
 def test_only_the_workers_for_webassembly_may_run_it(client: TestClient, tmp_path: Path) -> None:
-    """Only workers for WebAssembly may run it, and only that of textures code made from text."""
+    """Only workers for WebAssembly may run it, and only two of them code made from text."""
     (tmp_path / "wasm").mkdir()
     for script in ("short.js", "long.js"):
         (tmp_path / "wasm" / script).write_text(SCRIPT if script == "long.js" else "1;\n")
@@ -61,11 +61,37 @@ def test_only_the_workers_for_webassembly_may_run_it(client: TestClient, tmp_pat
         assert "'wasm-unsafe-eval'" in policy
         assert "'unsafe-eval'" not in policy
         assert "default-src 'none'" in policy
-    (tmp_path / "wasm" / "textureWorker-1.js").write_text("1;\n")
-    policy = client.get("/assets/wasm/textureWorker-1.js").headers["content-security-policy"]
-    assert policy == f"{WASM_POLICY} 'unsafe-eval'"
+    for evaluating in ("textureWorker-1.js", "bodiesWorker-1.js"):
+        (tmp_path / "wasm" / evaluating).write_text("1;\n")
+        policy = client.get(f"/assets/wasm/{evaluating}").headers["content-security-policy"]
+        assert policy == f"{WASM_POLICY} 'unsafe-eval'"
     # On Windows, the file's path has backslashes; here they are part of its name.
     (tmp_path / "wasm\\textureWorker-2.js").write_text("1;\n")
     windows = client.get("/assets/wasm%5CtextureWorker-2.js")
     assert (windows.status_code, windows.headers["content-security-policy"]) == (200, policy)
     assert "content-security-policy" not in client.get("/assets/page.js").headers
+
+
+def test_webassembly_is_sent_compressed(client: TestClient, tmp_path: Path) -> None:
+    """WebAssembly is sent compressed, since a headset fetches ten megabytes of it."""
+    (tmp_path / "physics.wasm").write_bytes(bytes(4000))
+    answer = client.get("/assets/physics.wasm", headers={"accept-encoding": "gzip"})
+    assert answer.headers["content-type"] == "application/wasm"
+    assert answer.headers["content-encoding"] == "gzip"
+
+
+def test_only_the_headsets_page_is_isolated_and_workers_may_run_in_it(tmp_path: Path) -> None:
+    """The headset's page alone is cross-origin isolated, and scripts may run in it as workers."""
+    for name in ("console", "tablet", "vr"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "index.html").write_text("<!doctype html>")
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "assets" / "worker.js").write_text("1;\n")
+    app = FastAPI()
+    install_pages(app, tmp_path)
+    client = TestClient(app)
+    embedder = "cross-origin-embedder-policy"
+    for address in ("/vr", "/assets/worker.js"):
+        assert client.get(address).headers[embedder] == "require-corp"
+    for address in ("/", "/tablet"):
+        assert embedder not in client.get(address).headers

@@ -43,6 +43,11 @@ export interface BodiesFrame {
   readonly health: Health;
 }
 
+/** A body cannot be changed as ordered while it runs; the message says why. */
+export class CannotChange extends Error {
+  override name = "CannotChange";
+}
+
 export interface Bodies {
   /** The parts whose touches are reported, in the order of `touched`. */
   readonly touchingParts: readonly string[];
@@ -53,7 +58,11 @@ export interface Bodies {
   setLatency(orderedS: number): void;
   /** Make the surfaces with these keys solid, and report touches of them; none removes all. */
   showSurfaces(keys: readonly string[]): void;
-  /** Apply an operator's or a study's changes; resolves to the angle of every held axis. */
+  /**
+   * Apply an operator's or a study's changes, as soon as the body has taken the participant's pose;
+   * resolves to the angle of every held axis, rejects with `CannotChange`. A body that is put on
+   * later is changed likewise, without being asked for.
+   */
   change(order: AvatarOrder): Promise<Readonly<Record<string, number>>>;
   /** Compute this frame; `latest` shows the result, at once or one frame later. */
   step(input: BodiesInput): void;

@@ -5,20 +5,22 @@
  * session are made at once, so that putting one on takes no time.
  */
 import type { MjModel } from "@mujoco/mujoco";
-import { FINGER_PARTS, JOINTS } from "@shared/avatar/anatomy.generated";
 import type { Goals } from "@shared/avatar/goals";
 import { type Mujoco, modelFrom } from "@shared/avatar/mujoco";
 import type { AvatarOrder } from "../telemetry/wire/fromServer";
 import { DelayedCopy } from "./delayedCopy";
 import { FollowedBody } from "./followedBody";
 import { OwnBody, skeletonModel } from "./ownBody";
+import { partsOf } from "./parts";
 import { SimulationError } from "./physics/modelTable";
 import type { RemoteBody } from "./remoteBody";
 import type { AvatarAnswer, BodiesSetup } from "./setup";
 
-/** The parts whose touches are reported. */
-export const partsOf = ({ withFingers }: BodiesSetup): readonly string[] =>
-  withFingers ? [...JOINTS, ...FINGER_PARTS] : JOINTS;
+/** Whoever wants to know what became of a change. */
+export interface Asker {
+  onHeld(heldRad: Readonly<Record<string, number>>): void;
+  onProblem(problem: string): void;
+}
 
 export class BodiesEngine {
   readonly own: OwnBody;
@@ -31,10 +33,7 @@ export class BodiesEngine {
   private latencyS = 0;
   private surfaces: readonly string[] = [];
   private order: AvatarOrder | null = null;
-  private waiting: {
-    readonly resolve: (heldRad: Readonly<Record<string, number>>) => void;
-    readonly reject: (reason: unknown) => void;
-  } | null = null;
+  private asker: Asker | null = null;
   private isOrderDue = false;
 
   constructor(mujoco: Mujoco, setup: BodiesSetup) {
@@ -77,15 +76,17 @@ export class BodiesEngine {
     this.worn.showSurfaces(keys);
   }
 
-  /** Apply an order as soon as the body has taken the participant's pose. */
-  change(order: AvatarOrder): Promise<Readonly<Record<string, number>>> {
-    this.waiting?.reject(new SimulationError("A newer change replaced this one."));
+  /**
+   * Apply an order as soon as the body has taken the participant's pose; then tell the asker.
+   *
+   * Not a promise: a worker that waits for frames in `Atomics.wait` settles none.
+   */
+  change(order: AvatarOrder, asker: Asker): void {
+    this.asker?.onProblem("A newer change has replaced this one.");
+    this.asker = asker;
     this.order = order;
     this.isOrderDue = true;
-    return new Promise((resolve, reject) => {
-      this.waiting = { resolve, reject };
-      if (this.worn.hasMoved) this.applyOrder();
-    });
+    if (this.worn.hasMoved) this.applyOrder();
   }
 
   /** Compute one frame. */
@@ -100,23 +101,25 @@ export class BodiesEngine {
   }
 
   dispose(): void {
-    this.waiting?.reject(new SimulationError("The bodies are gone."));
+    this.asker?.onProblem("The bodies were taken away before the change.");
+    this.asker = null;
     for (const remote of this.remotes.values()) remote.dispose();
     this.own.dispose();
     this.ownModel.delete();
   }
 
   private applyOrder(): void {
-    const { waiting, order } = this;
-    this.waiting = null;
+    const { asker, order } = this;
+    this.asker = null;
     this.isOrderDue = false;
     if (order === null) return;
     try {
       const heldRad = this.worn.change(order);
-      waiting?.resolve(heldRad);
+      asker?.onHeld(heldRad);
     } catch (error) {
-      // A body that is put on later may not be able to do what the first one could.
-      waiting?.reject(error);
+      // Without an asker the order was reported before, with another body.
+      if (!(error instanceof SimulationError)) throw error;
+      asker?.onProblem(error.message);
     }
   }
 }

@@ -1,8 +1,9 @@
 /** Bodies computed in the page's own thread: nothing is added to the latency. */
 import { loadMujoco } from "@shared/avatar/mujoco";
 import type { AvatarOrder } from "../telemetry/wire/fromServer";
-import type { Bodies, BodiesFrame, BodiesInput } from "./bodies";
-import { BodiesEngine, partsOf } from "./engine";
+import { type Bodies, type BodiesFrame, type BodiesInput, CannotChange } from "./bodies";
+import { BodiesEngine } from "./engine";
+import { partsOf } from "./parts";
 import type { BodiesSetup } from "./setup";
 
 /** Make the bodies; the page's policy must allow `'unsafe-eval'` (tests, benchmarks). */
@@ -55,7 +56,12 @@ class BodiesInPage implements Bodies {
   }
 
   change(order: AvatarOrder): Promise<Readonly<Record<string, number>>> {
-    return this.engine.change(order);
+    return new Promise((resolve, reject) => {
+      this.engine.change(order, {
+        onHeld: resolve,
+        onProblem: (problem) => reject(new CannotChange(problem)),
+      });
+    });
   }
 
   step({ timeS, goals, fingers }: BodiesInput): void {
