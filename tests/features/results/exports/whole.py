@@ -21,6 +21,8 @@ MORE = (
     "alarms",
     "clock_probes",
     "clock_mapping",
+    "goal_states",
+    "body_calibrations",
     "calibrations",
     "codebook",
 )

@@ -11,6 +11,7 @@ from app.features.results.analysis.codebook.equipment import (
     CLOCK_MAPPING,
     CLOCK_PROBES,
 )
+from app.features.results.analysis.codebook.headset import BODY_CALIBRATIONS, GOAL_STATES
 from app.features.results.analysis.codebook.movement import (
     COMPLETIONS,
     CONTACTS,
@@ -41,6 +42,8 @@ TABLES: dict[str, str] = {
     "alarms": "One row per alarm that was raised, and one per alarm that was cleared.",
     "clock_probes": "One row per exchange of clock readings between a headset and the server.",
     "clock_mapping": "One row per segment of a headset's clock, brought to the server's.",
+    "goal_states": "One row per change in how a headset knew the parts of the body.",
+    "body_calibrations": "One row per calibration of a headset to the participant, and part.",
     "events": "One row per event of a session's log: the audit trail.",
     "calibrations": "One row per measurement of the equipment's own delay; of no one session.",
     "codebook": "One row per column of the other files.",
@@ -64,6 +67,8 @@ CODEBOOK: tuple[Column, ...] = (
     *ALARMS,
     *CLOCK_PROBES,
     *CLOCK_MAPPING,
+    *GOAL_STATES,
+    *BODY_CALIBRATIONS,
     *EVENTS,
     *CALIBRATIONS,
     _B.text(

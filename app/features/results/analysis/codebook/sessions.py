@@ -114,6 +114,21 @@ PHASES: tuple[Column, ...] = (
     ),
     _P.text("latency_reason", "Why there is no achieved latency, or what to keep in mind of it."),
     _P.number(
+        "headset_added_ms",
+        "Delay that the headset's own computing adds to what is shown, as it reported: one frame "
+        "if the physics runs in a worker. The achieved latency includes it. Empty if the headset's "
+        "program does not say.",
+        "ms",
+        "0 to 1000",
+    ),
+    _P.number(
+        "headset_compensated_ms",
+        "How much of headset_added_ms was taken off the ordered delay; at 0 ms nothing can be. "
+        "Expected is latency_ms + headset_added_ms - headset_compensated_ms.",
+        "ms",
+        "0 to 1000",
+    ),
+    _P.number(
         "movement_s",
         "Active time during which at least one of the participant's joints (without the hips) "
         "turned faster than 20 deg/s. Empty until it is computed.",

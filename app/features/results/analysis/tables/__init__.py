@@ -15,6 +15,7 @@ from app.features.results.analysis.tables.equipment import (
     clock_mapping_table,
     clock_probes_table,
 )
+from app.features.results.analysis.tables.headset import body_calibrations_table, goal_states_table
 from app.features.results.analysis.tables.joint_errors import (
     joint_angles_table,
     joint_error_course_table,
@@ -44,6 +45,7 @@ __all__ = [
     "Kind",
     "alarms_table",
     "answers_table",
+    "body_calibrations_table",
     "calibrations_table",
     "clock_mapping_table",
     "clock_probes_table",
@@ -53,6 +55,7 @@ __all__ = [
     "corrections_table",
     "doubts_table",
     "events_table",
+    "goal_states_table",
     "has_rules",
     "joint_angles_table",
     "joint_error_course_table",

@@ -18,6 +18,7 @@ from app.features.results.analysis.tables.context import (
     read,
     sessions_context,
 )
+from app.features.results.analysis.tables.headset import added_latencies
 from app.features.results.analysis.tables.tasks import red_spans, total_s
 from app.models import (
     AlarmRow,
@@ -46,7 +47,7 @@ def phases_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """Return one row per phase, by session and phase."""
     study = study_by_key(db, study_key)
     frame = phases_context(db, study_key, kind)
-    for more in (_details, _completions, _red, _latencies, _avatar_changes):
+    for more in (_details, _completions, _red, _latencies, added_latencies, _avatar_changes):
         frame = frame.merge(more(db, study, kind), on=_KEYS, how="left")
     for name in ("completions", "side_contacts", "side_red_s"):
         frame[name] = [0 if pd.isna(value) else value for value in frame[name]]

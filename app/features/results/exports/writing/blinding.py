@@ -27,6 +27,7 @@ EMPTIED = frozenset(
         "achieved_latency_low_ms",
         "achieved_latency_high_ms",
         "latency_reason",
+        "headset_compensated_ms",
         "previous_hash",
         "hash",
     }

@@ -23,6 +23,7 @@ from app.features.results.analysis.tables import (
     Kind,
     alarms_table,
     answers_table,
+    body_calibrations_table,
     calibrations_table,
     clock_mapping_table,
     clock_probes_table,
@@ -31,6 +32,7 @@ from app.features.results.analysis.tables import (
     corrections_table,
     doubts_table,
     events_table,
+    goal_states_table,
     has_rules,
     joint_error_course_table,
     joint_errors_table,
@@ -65,6 +67,8 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "alarms": alarms_table,
     "clock_probes": clock_probes_table,
     "clock_mapping": clock_mapping_table,
+    "goal_states": goal_states_table,
+    "body_calibrations": body_calibrations_table,
 }
 README = "README.txt"
 FOLDERS = {"samples": ".csv", "fingers": ".csv", "receipts": ".json", "imported": ".csv"}

@@ -31,6 +31,7 @@ const FILES = [
   "alarms",
   "doubts",
   "clocks",
+  "headset",
   "samples",
   "receipts",
   "imported",

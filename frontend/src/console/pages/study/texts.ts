@@ -46,6 +46,9 @@ const exportsEn = {
   "export.file.clocks": "clock_probes.csv, clock_mapping.csv",
   "export.about.clocks":
     "The headset's clock compared with the server's: raw readings, and the offset, drift and uncertainty estimated from them.",
+  "export.file.headset": "goal_states.csv, body_calibrations.csv",
+  "export.about.headset":
+    "Which parts of the body the headset measured, and how it was calibrated to the participant.",
   "export.file.samples": "samples/*.csv",
   "export.about.samples":
     "One file per session: target and actual pose of every frame, side by side.",
@@ -108,6 +111,9 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.file.clocks": "clock_probes.csv, clock_mapping.csv",
   "export.about.clocks":
     "Die Uhr des Headsets verglichen mit der des Servers: Rohwerte und die daraus geschätzten Werte für Versatz, Drift und Unsicherheit.",
+  "export.file.headset": "goal_states.csv, body_calibrations.csv",
+  "export.about.headset":
+    "Welche Körperteile das Headset gemessen hat und wie es auf die Person kalibriert war.",
   "export.file.samples": "samples/*.csv",
   "export.about.samples":
     "Eine Datei je Sitzung: Ziel- und Ist-Haltung jedes Bildes nebeneinander.",
