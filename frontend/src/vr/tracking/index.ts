@@ -1,3 +1,6 @@
+export { CaptureSource, type Recording, RecordingError } from "./capture/source";
+export { DESKTOP_ACTIONS, DESKTOP_KEYS, type DesktopAction } from "./desktop/controls";
+export { DesktopSource } from "./desktop/source";
 export {
   DEVICE_PROFILES,
   type DeviceKey,

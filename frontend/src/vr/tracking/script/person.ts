@@ -37,6 +37,7 @@ import {
   minimumJerk,
   type ScriptedGoal,
   type Traits,
+  unit,
 } from "./movements";
 import { armRotation, handRotation, legRotation, twoBone } from "./posture";
 import { type Random, seeded } from "./random";
@@ -94,6 +95,19 @@ const BACKWARDS: Vector = [0, 0, 1];
 const KNEE_POLE: Vector = [0, 0, -1];
 const IDENTITY: Quaternion = [1, 0, 0, 0];
 const DEGREES = Math.PI / 180;
+const GUIDE_RATE = 10;
+const GUIDE_S = 0.5;
+
+/** A hand that somebody leads from outside, such as with a mouse. */
+interface Guided {
+  tipM: Vector;
+  fingers: Vector;
+  /** Where the fingers point now, on their way to `fingers`. */
+  along: Vector;
+  readonly axes: readonly [Follower, Follower, Follower];
+  share: number;
+  isHeld: boolean;
+}
 
 /** Rotations of upper arm, lower arm and hand in the shoulder's frame, for one side. */
 type Arm = readonly [upper: Quaternion, lower: Quaternion, hand: Quaternion];
@@ -139,6 +153,7 @@ export class ScriptedPerson {
   private lookM: Vector | null = null;
   private readonly pointsAt: Record<PersonSide, Vector | null> = { left: null, right: null };
   private readonly pointing: Record<PersonSide, number> = { left: 0, right: 0 };
+  private readonly guided: Record<PersonSide, Guided | null> = { left: null, right: null };
   private timeS: number | null = null;
 
   constructor(options: PersonOptions) {
@@ -173,6 +188,39 @@ export class ScriptedPerson {
   /** Hold a hand up and point at something, such as a row of a panel; null: let it hang again. */
   pointAt(side: PersonSide, pointM: Vector | null): void {
     this.pointsAt[side] = pointM;
+  }
+
+  /**
+   * Lead a finger tip to a point, fingers along a direction, from now on; null: let go. The hand
+   * follows within half a second, as far as the arm reaches.
+   */
+  guide(side: PersonSide, tipM: Vector | null, fingers: Vector = [0, 0, -1]): void {
+    const guided = this.guided[side];
+    if (tipM === null) {
+      if (guided !== null) guided.isHeld = false;
+      return;
+    }
+    if (guided === null) {
+      const hand = INDEX[side === "left" ? "LeftHand" : "RightHand"];
+      const from = this.joints.positionsM[hand] as Vector;
+      const axis = (at: 0 | 1 | 2) => new Follower(from[at], GUIDE_RATE);
+      const axes = [axis(0), axis(1), axis(2)] as const;
+      this.guided[side] = { tipM, fingers, along: fingers, axes, share: 0, isHeld: true };
+      return;
+    }
+    guided.tipM = tipM;
+    guided.fingers = fingers;
+    guided.isHeld = true;
+  }
+
+  /** Whether a step is being made or planned. */
+  get isStepping(): boolean {
+    return this.feet.isBusy;
+  }
+
+  /** Where the body stands: between the ankles. */
+  get standsAt(): readonly [x: number, z: number] {
+    return this.feet.centre;
   }
 
   /** Where a hand's ray starts and leads: along the fingers, or to what it points at. */
@@ -367,6 +415,7 @@ export class ScriptedPerson {
       const share = minimumJerk(this.pointing[name]);
       arm = mixed(arm, this.towards(name, shoulderM, turn, at), share);
     }
+    arm = this.guidedArm(name, side, arm, shoulderM, turn, stepS);
     const hand = this.hands[side];
     if (!hand.isIdle) {
       const tipM = hand.work === 0 ? this.tipOf(arm, side, shoulderM, turn) : hand.tipM;
@@ -379,6 +428,36 @@ export class ScriptedPerson {
       }
     }
     for (const [index, rotation] of arm.entries()) this.local[first + index] = rotation;
+  }
+
+  /** The arm led to where its hand is guided; it lets go and engages within half a second. */
+  private guidedArm(
+    name: PersonSide,
+    side: 0 | 1,
+    arm: Arm,
+    shoulderM: Vector,
+    turn: Quaternion,
+    stepS: number,
+  ): Arm {
+    const guided = this.guided[name];
+    if (guided === null) return arm;
+    const change = stepS / GUIDE_S;
+    guided.share = Math.min(1, Math.max(0, guided.share + (guided.isHeld ? change : -change)));
+    const { axes, tipM, isHeld } = guided;
+    // A hand turns no faster than it moves, however suddenly its fingers are told to.
+    const turnShare = Math.min(1, GUIDE_RATE * stepS);
+    const mean = plus(times(guided.along, 1 - turnShare), times(guided.fingers, turnShare));
+    guided.along = unit(mean, guided.fingers);
+    const fingers = guided.along;
+    const followed: Vector = [
+      axes[0].follow(tipM[0], stepS),
+      axes[1].follow(tipM[1], stepS),
+      axes[2].follow(tipM[2], stepS),
+    ];
+    const wristM = minus(followed, times(fingers, this.skeleton.handM));
+    const { solved } = this.stretched(side, shoulderM, turn, wristM, fingers);
+    if (!isHeld && guided.share === 0) this.guided[name] = null;
+    return mixed(arm, solved, minimumJerk(guided.share));
   }
 
   /** The arm in the pose that it takes, or on its way to it. */
@@ -410,18 +489,24 @@ export class ScriptedPerson {
     turn: Quaternion,
     hand: ReachingHand,
   ): { solved: Arm; missingM: Vector } {
-    const { upperArmM, forearmM, handM } = this.skeleton;
-    const wristM = minus(hand.tipM, times(hand.fingers, handM));
+    const wristM = minus(hand.tipM, times(hand.fingers, this.skeleton.handM));
+    return this.stretched(side, shoulderM, turn, wristM, hand.fingers);
+  }
+
+  /** The arm that brings the wrist to a place, or as near as it gets, and what is missing. */
+  private stretched(
+    side: 0 | 1,
+    shoulderM: Vector,
+    turn: Quaternion,
+    wristM: Vector,
+    fingers: Vector,
+  ): { solved: Arm; missingM: Vector } {
+    const { upperArmM, forearmM } = this.skeleton;
     const way = minus(wristM, shoulderM);
     const awayM = Math.max(length(way), 1e-9);
     const reachM = softReach(awayM, upperArmM + forearmM);
-    const solved = this.solved(
-      side,
-      shoulderM,
-      turn,
-      plus(shoulderM, times(way, reachM / awayM)),
-      hand.fingers,
-    );
+    const reachedM = plus(shoulderM, times(way, reachM / awayM));
+    const solved = this.solved(side, shoulderM, turn, reachedM, fingers);
     return { solved, missingM: times(way, (awayM - reachM) / awayM) };
   }
 
