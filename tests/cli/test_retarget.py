@@ -20,6 +20,7 @@ _KEYS = [
     "frames",
     "fps",
     "leg_ratio",
+    "stride_lengths_m",
     "step_lengths_m",
     "step_heights_m",
     "foot_slide_m_s",
@@ -45,7 +46,7 @@ def test_json_has_exactly_its_keys_and_steps_scale_with_the_legs(clip: Path) -> 
     assert figures["fps"] == pytest.approx(120.0, abs=1e-3)
     assert figures["leg_ratio"] == pytest.approx(1.30 / 1.75, abs=1e-9)
     assert figures["unmapped_joints"] == []
-    for key in ("step_lengths_m", "step_heights_m"):
+    for key in ("stride_lengths_m", "step_heights_m"):
         steps = figures[key]
         assert isinstance(steps, dict)
         ratios = np.array(steps["avatar"]) / np.array(steps["source"])
@@ -230,7 +231,7 @@ def test_real_captures_are_retargeted(
 ) -> None:
     """A real walk is retargeted from BVH, and from AMC with the ASF next to it."""
     figures = _figures(shared_data / "motion" / name, "--to", "165cm")
-    lengths = figures["step_lengths_m"]
+    lengths = figures["stride_lengths_m"]
     assert figures["frames"] == frames
     assert isinstance(lengths, dict)
     assert len(lengths["source"]) == len(lengths["avatar"]) == steps

@@ -7,21 +7,25 @@ _NONE = "-"
 
 
 def as_json(done: Done) -> dict[str, object]:
-    """Return the result for scripts; step i is the same step of source and avatar."""
+    """Return the result for scripts; stride i is the same stride of source and avatar."""
     result, walks = done.result, done.result.walks
-    source = walks.source.steps if walks else ()
-    avatar = walks.avatar.steps if walks else ()
+    source = walks.source.strides if walks else ()
+    avatar = walks.avatar.strides if walks else ()
     return {
         "frames": result.motion.frame_count,
         "fps": result.motion.rate_hz,
         "leg_ratio": result.leg_ratio,
+        "stride_lengths_m": {
+            "source": [stride.length_m for stride in source],
+            "avatar": [stride.length_m for stride in avatar],
+        },
         "step_lengths_m": {
-            "source": [step.length_m for step in source],
-            "avatar": [step.length_m for step in avatar],
+            "source": list(walks.source.step_lengths_m) if walks else [],
+            "avatar": list(walks.avatar.step_lengths_m) if walks else [],
         },
         "step_heights_m": {
-            "source": [step.height_m for step in source],
-            "avatar": [step.height_m for step in avatar],
+            "source": [stride.height_m for stride in source],
+            "avatar": [stride.height_m for stride in avatar],
         },
         "foot_slide_m_s": walks.slide_m_s if walks else None,
         "unmapped_joints": list(result.unmapped_avatar_joints),
@@ -90,17 +94,20 @@ def table1_text(rows: tuple[Table1Row, ...]) -> str:
 def _figures(done: Done) -> list[str]:
     walks, result = done.result.walks, done.result
     if walks is None:
-        return [f"  {'scale':<20}{result.scale:.4f} (by {result.scaled_by}; no legs, so no steps)"]
+        return [
+            f"  {'scale':<20}{result.scale:.4f} (by {result.scaled_by}; no legs, so no strides)"
+        ]
     source, avatar = walks.source, walks.avatar
     return [
         f"  {'':<20}{'clip':>10}{'avatar':>10}{'ratio':>10}",
         _row("leg length", source.leg_length_m, avatar.leg_length_m, "m"),
         _row("thigh share of leg", source.thigh_share, avatar.thigh_share, "", ratio=False),
+        _row("stride length, mean", source.mean_stride_length_m, avatar.mean_stride_length_m, "m"),
         _row("step length, mean", source.mean_step_length_m, avatar.mean_step_length_m, "m"),
         _row("step height, mean", source.mean_step_height_m, avatar.mean_step_height_m, "m"),
         *_slide(walks),
         "",
-        *_steps(source, avatar),
+        *_strides(source, avatar),
         "",
     ]
 
@@ -116,17 +123,17 @@ def _slide(walks: Walks) -> list[str]:
     return [before, after, lowered]
 
 
-def _steps(source: Walk, avatar: Walk) -> list[str]:
-    if not source.steps:
-        return ["  no whole step"]
+def _strides(source: Walk, avatar: Walk) -> list[str]:
+    if not source.strides:
+        return ["  no whole stride"]
     lines = [
-        f"  {'step':<8}{'lift s':>8}{'down s':>8}{'length m':>20}{'height m':>20}",
+        f"  {'stride':<8}{'lift s':>8}{'down s':>8}{'length m':>20}{'height m':>20}",
         f"  {'':<8}{'':>8}{'':>8}{'clip':>10}{'avatar':>10}{'clip':>10}{'avatar':>10}",
     ]
     lines += [
         f"  {a.side:<8}{a.lift_s:>8.2f}{a.contact_s:>8.2f}{a.length_m:>10.3f}{b.length_m:>10.3f}"
         f"{a.height_m:>10.3f}{b.height_m:>10.3f}"
-        for a, b in zip(source.steps, avatar.steps, strict=True)
+        for a, b in zip(source.strides, avatar.strides, strict=True)
     ]
     return lines
 

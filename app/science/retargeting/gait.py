@@ -1,10 +1,14 @@
-"""Measures of a walk: the paths of the balls of the feet, lifts, steps, and foot slide.
+"""Measures of a walk: the paths of the balls of the feet, lifts, strides, steps, and foot slide.
 
 The paper rates a retargeted walk by its figure 9: the main toe joint's forward against its vertical
-movement. A *lift* is one arc in that figure: the ball leaves the ground, swings and comes down. A
-step's length is the ball's forward travel from the middle of the previous contact to the middle of
-the next one, where it rests, and its height is the range from its lowest to its highest position
-between them (the paper's 110, 150 and 165 cm, and 16, 20 and 22 cm).
+movement. A *lift* is one arc in that figure: the ball leaves the ground, swings and comes down.
+
+A *stride* leads from one contact of a foot to the next contact of the same foot, and a *step* from
+a contact of one foot to the next contact of the other, as gait analysis uses the words: two steps
+make a stride. Both are measured between the middles of the contacts, where the balls rest. The
+paper's figure 9 shows strides, which it calls step sizes (110, 150 and 165 cm). The *step height*
+of a stride is the range from the ball's lowest to its highest position on the way (16, 20 and 22
+cm).
 
 Source: Degen et al. (2022), section 4 and figure 9.
 
@@ -36,8 +40,8 @@ _LOWEST_LIFT = 0.02
 
 
 @dataclass(frozen=True)
-class Step:
-    """One lift of a foot, from contact to contact.
+class Stride:
+    """One lift of a foot, from its contact to its next contact.
 
     Attributes:
         side: whether it is the left or the right foot.
@@ -86,7 +90,9 @@ class Walk:
         thigh_share: thigh over thigh plus shin, the mean of both legs.
         feet: the paths of the left and the right foot.
         contacts: the times at which the feet are down.
-        steps: whole lifts in the order of their start; lifts cut off by the capture are left out.
+        strides: whole lifts in the order of their start; lifts cut off by the capture are left out.
+        step_lengths_m: forward distance from each whole contact to the next one, of the other foot,
+            in the order of time; contacts cut off by the capture count from where they are seen.
         slide_m_s: mean horizontal speed of feet in contact; None without contact.
     """
 
@@ -95,18 +101,24 @@ class Walk:
     thigh_share: float
     feet: tuple[FootPath, FootPath]
     contacts: Contacts
-    steps: tuple[Step, ...]
+    strides: tuple[Stride, ...]
+    step_lengths_m: tuple[float, ...]
     slide_m_s: float | None
 
     @property
+    def mean_stride_length_m(self) -> float | None:
+        """Mean length of the strides; None without a whole stride."""
+        return _mean([stride.length_m for stride in self.strides])
+
+    @property
     def mean_step_length_m(self) -> float | None:
-        """Mean length of the steps; None without a whole step."""
-        return _mean([step.length_m for step in self.steps])
+        """Mean length of the steps; None without a step."""
+        return _mean(list(self.step_lengths_m))
 
     @property
     def mean_step_height_m(self) -> float | None:
-        """Mean height of the steps; None without a whole step."""
-        return _mean([step.height_m for step in self.steps])
+        """Mean height of the lifts; None without a whole stride."""
+        return _mean([stride.height_m for stride in self.strides])
 
 
 def walk_figures(
@@ -130,39 +142,52 @@ def walk_figures(
     travel = directions(motion, positions, legs)
     lowest = _LOWEST_LIFT * legs.length_m if contacts is None else 0.0
     used_contacts = contacts or contacts_of(balls, legs.length_m, motion.rate_hz)
-    feet, steps = [], []
+    feet, strides = [], []
     for foot, (leg, ball) in enumerate(zip(legs.both, balls, strict=True)):
         above = ball[:, 1] - ground.height_m(ball[:, 0], ball[:, 2])
         path = FootPath(leg.side, forward_m(ball, hips, travel), above)
         feet.append(path)
-        steps += _steps(path, ball[:, 1], used_contacts.intervals(foot), motion.rate_hz, lowest)
+        strides += _strides(path, ball[:, 1], used_contacts.intervals(foot), motion.rate_hz, lowest)
     return Walk(
         rate_hz=motion.rate_hz,
         leg_length_m=legs.length_m,
         thigh_share=(legs.left.thigh_share + legs.right.thigh_share) / 2.0,
         feet=(feet[0], feet[1]),
         contacts=used_contacts,
-        steps=tuple(sorted(steps, key=lambda step: (step.lift_s, step.side))),
+        strides=tuple(sorted(strides, key=lambda stride: (stride.lift_s, stride.side))),
+        step_lengths_m=_step_lengths_m(feet, used_contacts),
         slide_m_s=mean_slide_m_s(balls, used_contacts),
     )
 
 
-def _steps(
+def _step_lengths_m(feet: list[FootPath], contacts: Contacts) -> tuple[float, ...]:
+    """Return the lengths of all steps: from each contact to the next one, if of the other foot."""
+    middles = sorted(
+        (sum(interval) // 2, foot) for foot in (0, 1) for interval in contacts.intervals(foot)
+    )
+    return tuple(
+        float(feet[foot].forward_m[after] - feet[other].forward_m[before])
+        for (before, other), (after, foot) in pairwise(middles)
+        if foot != other
+    )
+
+
+def _strides(
     path: FootPath,
     ball_height_m: FloatArray,
     contacts: list[tuple[int, int]],
     rate_hz: float,
     lowest_m: float,
-) -> list[Step]:
-    steps = []
+) -> list[Stride]:
+    strides = []
     for before, after in pairwise(contacts):
         lift, contact = before[1], after[0]
         start, end = sum(before) // 2, sum(after) // 2
         arc = ball_height_m[start : end + 1]
         if float(arc.max()) - max(float(arc[0]), float(arc[-1])) < lowest_m:
             continue
-        steps.append(
-            Step(
+        strides.append(
+            Stride(
                 side=path.side,
                 lift_s=lift / rate_hz,
                 contact_s=contact / rate_hz,
@@ -171,7 +196,7 @@ def _steps(
                 contact_height_m=float(path.height_m[contact]),
             )
         )
-    return steps
+    return strides
 
 
 def _mean(values: list[float]) -> float | None:

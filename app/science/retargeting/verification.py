@@ -109,7 +109,7 @@ def verify(
 
 def lift_times_s(walk: Walk, side: Side) -> tuple[tuple[float, float], ...]:
     """Return the lift and contact time of each whole lift of a foot."""
-    return tuple((step.lift_s, step.contact_s) for step in walk.steps if step.side == side)
+    return tuple((one.lift_s, one.contact_s) for one in walk.strides if one.side == side)
 
 
 def _timing_difference_s(walks: list[Walk]) -> float | None:

@@ -33,21 +33,28 @@ def _noisy(motion: RigMotion, rng: np.random.Generator, spread_m: float) -> RigM
     return RigMotion(motion.rig, motion.rate_hz, root, motion.rotations, motion.observed)
 
 
-def test_steps_of_a_made_walk_are_as_long_and_high_as_they_were_made() -> None:
-    """Step lengths and heights are found; the first and the closing step are half as long."""
+def test_strides_of_a_made_walk_are_as_long_and_high_as_they_were_made() -> None:
+    """Lengths and heights of strides are found; the first and the closing one are half as long."""
     walk = walk_figures(_WALK.motion, mapped(_BODY))
-    assert [step.side for step in walk.steps] == ["left", "right", "left", "right", "left"]
-    assert [step.length_m for step in walk.steps] == pytest.approx(_WALK.lengths_m, abs=1e-9)
-    assert [step.height_m for step in walk.steps] == pytest.approx([_WALK.height_m] * 5, abs=1e-3)
+    assert [step.side for step in walk.strides] == ["left", "right", "left", "right", "left"]
+    assert [step.length_m for step in walk.strides] == pytest.approx(_WALK.lengths_m, abs=1e-9)
+    assert [step.height_m for step in walk.strides] == pytest.approx([_WALK.height_m] * 5, abs=1e-3)
+
+
+def test_a_step_leads_from_one_foot_to_the_other() -> None:
+    """Each step is half a stride: feet are set down 0.6 m apart, and closed at the end."""
+    walk = walk_figures(_WALK.motion, mapped(_BODY))
+    assert walk.step_lengths_m[-5:] == pytest.approx([0.6, 0.6, 0.6, 0.6, 0.0], abs=1e-9)
+    assert walk.mean_stride_length_m == pytest.approx(np.mean(_WALK.lengths_m), abs=1e-9)
 
 
 def test_lifts_are_found_when_the_feet_leave_and_come_down() -> None:
     """Lifts and contacts are found within 0.06 s of the truth."""
     walk = walk_figures(_WALK.motion, mapped(_BODY))
-    found = [(step.lift_s, step.contact_s) for step in walk.steps]
+    found = [(step.lift_s, step.contact_s) for step in walk.strides]
     assert np.array(found) == pytest.approx(np.array(_WALK.lifts_s), abs=0.06)
     assert lift_times_s(walk, "right") == tuple(
-        (step.lift_s, step.contact_s) for step in walk.steps if step.side == "right"
+        (step.lift_s, step.contact_s) for step in walk.strides if step.side == "right"
     )
 
 
@@ -78,7 +85,7 @@ def test_contacts_do_not_depend_on_size(factor: float) -> None:
 def test_steps_do_not_depend_on_where_the_walk_heads(angle_rad: float) -> None:
     """Steps do not depend on the direction of the walk in the room."""
     turned = walk_figures(_turned(_WALK.motion, angle_rad), mapped(_BODY))
-    assert [s.length_m for s in turned.steps] == pytest.approx(_WALK.lengths_m, abs=1e-9)
+    assert [s.length_m for s in turned.strides] == pytest.approx(_WALK.lengths_m, abs=1e-9)
 
 
 def test_noise_of_a_millimetre_adds_no_lift() -> None:
@@ -88,8 +95,8 @@ def test_noise_of_a_millimetre_adds_no_lift() -> None:
     """
     rng = np.random.default_rng(11)
     walk = walk_figures(_noisy(_WALK.motion, rng, 0.001), mapped(_BODY))
-    assert len(walk.steps) == len(_WALK.lengths_m)
-    assert [step.length_m for step in walk.steps] == pytest.approx(_WALK.lengths_m, abs=0.01)
+    assert len(walk.strides) == len(_WALK.lengths_m)
+    assert [step.length_m for step in walk.strides] == pytest.approx(_WALK.lengths_m, abs=0.01)
 
 
 def test_a_floor_that_drifts_does_not_hide_contacts() -> None:
@@ -97,7 +104,7 @@ def test_a_floor_that_drifts_does_not_hide_contacts() -> None:
     root = _WALK.motion.root_positions_m.copy()
     root[:, 1] -= 0.02 * root[:, 2]
     tilted = RigMotion(_BODY, RATE_HZ, root, _WALK.motion.rotations, _WALK.motion.observed)
-    assert len(walk_figures(tilted, mapped(_BODY)).steps) == len(_WALK.lengths_m)
+    assert len(walk_figures(tilted, mapped(_BODY)).strides) == len(_WALK.lengths_m)
 
 
 def test_standing_still_is_one_contact_without_a_step() -> None:
@@ -111,8 +118,8 @@ def test_standing_still_is_one_contact_without_a_step() -> None:
     )
     walk = walk_figures(still, mapped(_BODY))
     assert walk.contacts.intervals(0) == walk.contacts.intervals(1) == [(0, 59)]
-    assert walk.steps == ()
-    assert walk.mean_step_length_m is None
+    assert walk.strides == ()
+    assert walk.mean_stride_length_m is None
     assert walk.slide_m_s == 0.0
 
 

@@ -55,7 +55,7 @@ def test_the_steps_of_a_captured_person_are_human(walk: tuple[RigMotion, JointMa
     """
     walks = _onto(walk, 1.65).walks
     assert walks is not None
-    steps = walks.source.steps
+    steps = walks.source.strides
     assert len(steps) >= 4
     assert all(0.9 < step.length_m < 1.5 and 0.05 < step.height_m < 0.13 for step in steps)
     assert all(a.side != b.side for a, b in pairwise(steps))
@@ -79,7 +79,7 @@ def _steps_m(motion: RigMotion | MarkerMotion | BodyMotion) -> list[float]:
     if not isinstance(motion, RigMotion):
         motion = fit_skeleton(motion).motion
     joint_map = propose_joint_map(motion.rig).joint_map
-    return [step.length_m for step in walk_figures(motion, legs_of(motion.rig, joint_map)).steps]
+    return [step.length_m for step in walk_figures(motion, legs_of(motion.rig, joint_map)).strides]
 
 
 def test_knees_bend_as_knees_of_walkers_do(walk: tuple[RigMotion, JointMap]) -> None:

@@ -44,8 +44,8 @@ def test_steps_scale_exactly_with_the_legs(stature_m: float) -> None:
     assert result.walks is not None
     assert result.leg_ratio == pytest.approx(stature_m / 1.75, rel=1e-12)
     for name in ("length_m", "height_m"):
-        theirs = np.array([getattr(step, name) for step in result.walks.source.steps])
-        ours = np.array([getattr(step, name) for step in result.walks.avatar.steps])
+        theirs = np.array([getattr(step, name) for step in result.walks.source.strides])
+        ours = np.array([getattr(step, name) for step in result.walks.avatar.strides])
         assert len(ours) == 5
         assert ours / theirs == pytest.approx(np.full(5, result.leg_ratio), abs=1e-9)
 
@@ -171,7 +171,7 @@ def test_the_shortest_movements_come_through(frames: int) -> None:
         assert result.motion.frame_count == frames
         assert np.isfinite(result.motion.rotations).all()
         assert result.walks is not None
-        assert result.walks.avatar.steps == ()
+        assert result.walks.avatar.strides == ()
 
 
 def test_feet_of_an_upper_body_cannot_be_locked() -> None:
@@ -189,8 +189,8 @@ def test_lifts_agree_on_all_three_avatars_of_the_paper() -> None:
     figures = verify(_WALK, SAME, [(name, r.motion, SAME) for name, r in results])
     assert figures.lifts_agree
     assert figures.largest_timing_difference_s == 0.0
-    assert [len(avatar.walk.steps) for avatar in figures.avatars] == [5, 5, 5]
-    longer = [avatar.walk.mean_step_length_m for avatar in figures.avatars]
+    assert [len(avatar.walk.strides) for avatar in figures.avatars] == [5, 5, 5]
+    longer = [avatar.walk.mean_stride_length_m for avatar in figures.avatars]
     higher = [avatar.walk.mean_step_height_m for avatar in figures.avatars]
     assert np.array(longer) / longer[2] == pytest.approx(np.array(higher) / higher[2], abs=1e-9)
 

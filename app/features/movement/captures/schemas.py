@@ -202,8 +202,8 @@ class ToePathView(BaseModel):
     start_height_m: float
 
 
-class WalkStepView(BaseModel):
-    """One lift of a foot, from leaving the ground to the next contact.
+class WalkStrideView(BaseModel):
+    """One stride: a lift of a foot, from leaving the ground to its next contact.
 
     `length_m` is how far the ball moves forward, `height_m` from its lowest to its highest
     position, `contact_height_m` its height above the ground at the contact.
@@ -220,16 +220,18 @@ class WalkStepView(BaseModel):
 class WalkerView(BaseModel):
     """The walk of one body, the source or an avatar.
 
-    `leg_length_m` is thigh plus shin, `thigh_share` the thigh's part of it. Means are null without
-    a complete step. `foot_slide_m_s` is the mean speed of its feet over the ground while they are
-    down, null if none is.
+    `leg_length_m` is thigh plus shin, `thigh_share` the thigh's part of it. A stride leads from
+    a contact of a foot to the next one of the same foot, a step to the next one of the other.
+    Means are null without a complete stride or step. `foot_slide_m_s` is the mean speed of its
+    feet over the ground while they are down, null if none is.
     """
 
     name: str
     leg_length_m: float
     thigh_share: float
     toe_paths: list[ToePathView]
-    steps: list[WalkStepView]
+    strides: list[WalkStrideView]
+    mean_stride_length_m: float | None
     mean_step_length_m: float | None
     mean_step_height_m: float | None
     foot_slide_m_s: float | None
@@ -239,11 +241,11 @@ class AvatarWalkerView(WalkerView):
     """The walk of an avatar, compared with the source.
 
     `leg_ratio` is its leg length over the source's, `length_ratio` and `height_ratio` the same
-    ratios of mean step lengths and heights (null without steps). `lifts_agree`: it lifts each foot
-    as often as the source. Slides are speeds of its feet while the *source's* are down: `slide_m_s`
-    as shown here, `slide_before_m_s` before the feet were locked, null if they are not. With locked
-    feet, `lowered_m` is how far the hips came down at most, and `out_of_reach` counts frames in
-    which a foot could not be kept in place.
+    ratios of mean stride lengths and step heights (null without strides). `lifts_agree`: it lifts
+    each foot as often as the source. Slides are speeds of its feet while the *source's* are down:
+    `slide_m_s` as shown here, `slide_before_m_s` before the feet were locked, null if they are not.
+    With locked feet, `lowered_m` is how far the hips came down at most, and `out_of_reach` counts
+    frames in which a foot could not be kept in place.
     """
 
     stature_m: float

@@ -20,7 +20,7 @@ from app.features.movement.captures.schemas import (
     ToePathView,
     VerificationView,
     WalkerView,
-    WalkStepView,
+    WalkStrideView,
 )
 from app.features.movement.captures.source import Cannot, Source
 from app.science.retargeting import (
@@ -84,8 +84,8 @@ def _walker(name: str, walk: Walk, step: int) -> WalkerView:
             )
             for foot in walk.feet
         ],
-        steps=[
-            WalkStepView(
+        strides=[
+            WalkStrideView(
                 side=one.side,
                 lift_s=one.lift_s,
                 contact_s=one.contact_s,
@@ -93,8 +93,9 @@ def _walker(name: str, walk: Walk, step: int) -> WalkerView:
                 height_m=one.height_m,
                 contact_height_m=one.contact_height_m,
             )
-            for one in walk.steps
+            for one in walk.strides
         ],
+        mean_stride_length_m=walk.mean_stride_length_m,
         mean_step_length_m=walk.mean_step_length_m,
         mean_step_height_m=walk.mean_step_height_m,
         foot_slide_m_s=walk.slide_m_s,
@@ -109,9 +110,9 @@ def _avatar(
     before = None if walks is None or locked is None else walks.slide_before_m_s
     length_ratio = height_ratio = None
     if walks is not None:
-        # Over the same spans of time, so that corresponding steps are compared.
+        # Over the same spans of time, so that corresponding strides are compared.
         avatar, source = walks.avatar, walks.source
-        length_ratio = _ratio(avatar.mean_step_length_m, source.mean_step_length_m)
+        length_ratio = _ratio(avatar.mean_stride_length_m, source.mean_stride_length_m)
         height_ratio = _ratio(avatar.mean_step_height_m, source.mean_step_height_m)
     return AvatarWalkerView(
         **_walker(figures.name, figures.walk, step).model_dump(),
@@ -128,7 +129,7 @@ def _avatar(
 
 
 def _lifts(walk: Walk) -> tuple[int, int]:
-    sides = [one.side for one in walk.steps]
+    sides = [one.side for one in walk.strides]
     return sides.count("left"), sides.count("right")
 
 

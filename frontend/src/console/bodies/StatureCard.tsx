@@ -17,7 +17,7 @@ import { Loaded } from "../ui/Loaded";
 import classes from "./Bodies.module.css";
 
 const STATURES_M = PAPER_AVATARS.map((avatar) => statureOf(avatar) / 100);
-/** Step lengths and lifts that the paper prints for them (its figure 9), centimetres. */
+/** Stride lengths and lifts that the paper prints for them (its figure 9), centimetres. */
 const PRINTED = [
   { length: 110, height: 16 },
   { length: 150, height: 20 },
@@ -102,7 +102,7 @@ function StepTable({ id }: { readonly id: string | null }): JSX.Element {
               <Table.Th scope="row">
                 {t("capture.avatar.cm", { value: statureOf(avatar) })}
               </Table.Th>
-              <Table.Td>{cm(own?.mean_step_length_m)}</Table.Td>
+              <Table.Td>{cm(own?.mean_stride_length_m)}</Table.Td>
               <Table.Td>{PRINTED[index]?.length}</Table.Td>
               <Table.Td>{cm(own?.mean_step_height_m)}</Table.Td>
               <Table.Td>{PRINTED[index]?.height}</Table.Td>

@@ -136,18 +136,18 @@ export const bodiesEn = {
   "bodies.use.antisocial": "Antisocial or hateful use",
   "bodies.statures": "Three statures",
   "bodies.statures.lead":
-    "The body “neutral” at 130, 165 and 190 cm, the statures of the avatars of Degen et al. 2022. The table shows how long and how high their steps are when the same walk is transferred to them.",
+    "The body “neutral” at 130, 165 and 190 cm, the statures of the avatars of Degen et al. 2022. The table shows how long their strides and how high their steps are when the same walk is transferred to them.",
   "bodies.statures.capture": "Recorded walk",
   "bodies.statures.none":
     "Upload a recorded walk on the page Captures to see its steps on these bodies.",
   "bodies.statures.all": "The full verification of this capture",
   "bodies.statures.stature": "Stature",
-  "bodies.statures.length": "Step length (cm)",
+  "bodies.statures.length": "Stride length (cm)",
   "bodies.statures.height": "Lift (cm)",
   "bodies.statures.here": "this walk",
   "bodies.statures.printed": "paper",
   "bodies.statures.caption":
-    "Means over the steps of the walk. “Paper” is figure 9 of Degen et al. 2022, which shows another person's walk.",
+    "Means over the strides of the walk, from one contact of a foot to its next. “Paper” is figure 9 of Degen et al. 2022, which shows another person's walk.",
 } as const;
 
 export const bodiesDe: Readonly<Record<keyof typeof bodiesEn, string>> = {
@@ -292,16 +292,16 @@ export const bodiesDe: Readonly<Record<keyof typeof bodiesEn, string>> = {
   "bodies.use.antisocial": "Menschenfeindliche Nutzung",
   "bodies.statures": "Drei Körpergrößen",
   "bodies.statures.lead":
-    "Der Körper „neutral“ mit 130, 165 und 190 cm, den Körpergrößen der Avatare von Degen et al. 2022. Die Tabelle zeigt, wie lang und wie hoch ihre Schritte sind, wenn derselbe Gang auf sie übertragen wird.",
+    "Der Körper „neutral“ mit 130, 165 und 190 cm, den Körpergrößen der Avatare von Degen et al. 2022. Die Tabelle zeigt, wie lang ihre Doppelschritte und wie hoch ihre Schritte sind, wenn derselbe Gang auf sie übertragen wird.",
   "bodies.statures.capture": "Aufgezeichneter Gang",
   "bodies.statures.none":
     "Laden Sie auf der Seite Aufnahmen einen aufgezeichneten Gang hoch, um seine Schritte auf diesen Körpern zu sehen.",
   "bodies.statures.all": "Die vollständige Verifikation dieser Aufnahme",
   "bodies.statures.stature": "Körpergröße",
-  "bodies.statures.length": "Schrittlänge (cm)",
+  "bodies.statures.length": "Doppelschritt (cm)",
   "bodies.statures.height": "Hub (cm)",
   "bodies.statures.here": "dieser Gang",
   "bodies.statures.printed": "Artikel",
   "bodies.statures.caption":
-    "Mittelwerte über die Schritte des Gangs. „Artikel“ ist Abbildung 9 von Degen et al. 2022, die den Gang einer anderen Person zeigt.",
+    "Mittelwerte über die Doppelschritte des Gangs, von einem Aufsetzen eines Fußes bis zu seinem nächsten. „Artikel“ ist Abbildung 9 von Degen et al. 2022, die den Gang einer anderen Person zeigt.",
 };

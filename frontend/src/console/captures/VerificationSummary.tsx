@@ -14,7 +14,7 @@ export function VerificationSummary({
   const { t, language } = useTexts();
   const { source, avatars } = verification;
   const sourceLifts = liftsOf(source);
-  if ([source, ...avatars].every(({ steps }) => steps.length === 0)) {
+  if ([source, ...avatars].every(({ strides }) => strides.length === 0)) {
     return <Notice tone="warn" title={t("verify.noStep")} remedy={t("verify.noStep.body")} />;
   }
   if (!verification.lifts_agree) {
@@ -51,7 +51,7 @@ export function VerificationSummary({
   );
 }
 
-export function liftsOf({ steps }: Walker): { readonly left: number; readonly right: number } {
-  const left = steps.filter(({ side }) => side === "left").length;
-  return { left, right: steps.length - left };
+export function liftsOf({ strides }: Walker): { readonly left: number; readonly right: number } {
+  const left = strides.filter(({ side }) => side === "left").length;
+  return { left, right: strides.length - left };
 }

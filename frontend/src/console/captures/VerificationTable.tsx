@@ -98,7 +98,7 @@ function BodyRow({ walker, avatar, children }: BodyRowProps): JSX.Element {
       <Table.Td>{metres(walker.leg_length_m)}</Table.Td>
       <Table.Td>{avatar === null ? "1" : decimals(avatar.leg_ratio, language, 3)}</Table.Td>
       <Table.Td>
-        {metres(walker.mean_step_length_m)}
+        {metres(walker.mean_stride_length_m)}
         {ratio(avatar?.length_ratio)}
       </Table.Td>
       <Table.Td>
@@ -206,7 +206,7 @@ function Exports({ name, onExport }: ExportsProps): JSX.Element {
   );
 }
 
-function meanContact({ steps }: Walker, side: "left" | "right"): number | null {
-  const heights = steps.filter((one) => one.side === side).map((one) => one.contact_height_m);
+function meanContact({ strides }: Walker, side: "left" | "right"): number | null {
+  const heights = strides.filter((one) => one.side === side).map((one) => one.contact_height_m);
   return heights.length === 0 ? null : heights.reduce((sum, one) => sum + one, 0) / heights.length;
 }

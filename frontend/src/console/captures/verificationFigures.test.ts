@@ -27,7 +27,7 @@ const walker = (name: string, lift_s: number) => ({
     height_m: [0, 0.1],
     start_height_m: 0,
   })),
-  steps: (["left", "right"] as const).map((side) => ({
+  strides: (["left", "right"] as const).map((side) => ({
     side,
     lift_s,
     contact_s: lift_s + 0.4,
@@ -35,7 +35,8 @@ const walker = (name: string, lift_s: number) => ({
     height_m: 0.1,
     contact_height_m: 0,
   })),
-  mean_step_length_m: 1,
+  mean_stride_length_m: 1,
+  mean_step_length_m: 0.5,
   mean_step_height_m: 0.1,
   foot_slide_m_s: 0,
 });

@@ -92,7 +92,7 @@ export function liftsFigure(verification: Verification, words: FigureWords): Plo
   const bodies: readonly Walker[] = [verification.source, ...verification.avatars];
   const data = SIDES.map((side) => {
     const lifts = bodies.flatMap((body, row) =>
-      body.steps.filter((one) => one.side === side).map((one) => ({ ...one, row })),
+      body.strides.filter((one) => one.side === side).map((one) => ({ ...one, row })),
     );
     return {
       type: "bar",

@@ -1,7 +1,7 @@
 /** Texts of the verification: whether a walk keeps its character on avatars of several statures. */
 export const verificationEn = {
   "verify.lead":
-    "The movement on several avatars, checked as in Degen et al. (2022): feet lift as often and at the same times as the source's, and steps are longer or shorter in proportion to the legs.",
+    "The movement on several avatars, checked as in Degen et al. (2022): feet lift as often and at the same times as the source's, and strides are longer or shorter in proportion to the legs.",
   "verify.avatars": "Avatars",
   "verify.avatar.remove": "Remove {{avatar}}",
   "verify.avatar.add": "Add an avatar",
@@ -19,9 +19,9 @@ export const verificationEn = {
     "{{avatar}}: {{left}} left and {{right}} right instead of {{wantedLeft}} and {{wantedRight}}",
   "verify.differ.remedy":
     "Look at the lifts below: a foot that barely leaves the ground may count on one body and not on another.",
-  "verify.noStep": "No steps found",
+  "verify.noStep": "No strides found",
   "verify.noStep.body":
-    "No foot leaves the ground and comes down again within the capture, so there are no steps to compare. Angles and paths are shown.",
+    "No foot leaves the ground and comes down again within the capture, so there are no strides to compare. Angles and paths are shown.",
   "verify.impossible": "There is nothing to verify",
   "verify.unmapped": "Not mapped, so in the T-pose on every avatar: {{names}}",
   "verify.source": "Source",
@@ -31,7 +31,7 @@ export const verificationEn = {
   "verify.column.body": "Body",
   "verify.column.leg": "Leg length (m)",
   "verify.column.ratio": "Leg ratio",
-  "verify.column.length": "Step length (m)",
+  "verify.column.length": "Stride length (m)",
   "verify.column.height": "Step height (m)",
   "verify.column.start": "Toe at start (m)",
   "verify.column.contact": "Toe at contact (m)",
@@ -42,7 +42,8 @@ export const verificationEn = {
   "verify.slide.before": "{{before}} before locking",
   "verify.lowered": "hips up to {{centimetres}} cm lower",
   "verify.reach": "out of reach in {{count}} frames",
-  "verify.table.caption": "Means over whole steps. Slide is the mean speed of feet on the ground.",
+  "verify.table.caption":
+    "Means over whole strides (from one contact of a foot to its next). Slide is the mean speed of feet on the ground.",
   "verify.export": "{{avatar}} as {{format}}",
   "verify.angles": "Leg angles of the source",
   "verify.angles.caption":
@@ -65,7 +66,7 @@ export const verificationEn = {
 
 export const verificationDe: Readonly<Record<keyof typeof verificationEn, string>> = {
   "verify.lead":
-    "Die Bewegung auf mehreren Avataren, überprüft wie bei Degen et al. (2022): Die Füße heben sich so oft und zu denselben Zeiten wie die der Quelle, und die Schrittlänge ändert sich im Verhältnis der Beinlänge.",
+    "Die Bewegung auf mehreren Avataren, überprüft wie bei Degen et al. (2022): Die Füße heben sich so oft und zu denselben Zeiten wie die der Quelle, und die Länge der Doppelschritte ändert sich im Verhältnis der Beinlänge.",
   "verify.avatars": "Avatare",
   "verify.avatar.remove": "{{avatar}} entfernen",
   "verify.avatar.add": "Avatar hinzufügen",
@@ -83,9 +84,9 @@ export const verificationDe: Readonly<Record<keyof typeof verificationEn, string
     "{{avatar}}: {{left}} links und {{right}} rechts statt {{wantedLeft}} und {{wantedRight}}",
   "verify.differ.remedy":
     "Sehen Sie sich die Hebungen unten an: Ein Fuß, der den Boden kaum verlässt, zählt vielleicht bei einem Körper und beim anderen nicht.",
-  "verify.noStep": "Keine Schritte gefunden",
+  "verify.noStep": "Keine Doppelschritte gefunden",
   "verify.noStep.body":
-    "Kein Fuß verlässt in der Aufnahme den Boden und setzt wieder auf; deshalb gibt es keine Schritte zu vergleichen. Winkel und Wege werden gezeigt.",
+    "Kein Fuß verlässt in der Aufnahme den Boden und setzt wieder auf; deshalb gibt es keine Doppelschritte zu vergleichen. Winkel und Wege werden gezeigt.",
   "verify.impossible": "Es gibt nichts zu überprüfen",
   "verify.unmapped": "Nicht zugeordnet, also auf jedem Avatar in der T-Pose: {{names}}",
   "verify.source": "Quelle",
@@ -95,7 +96,7 @@ export const verificationDe: Readonly<Record<keyof typeof verificationEn, string
   "verify.column.body": "Körper",
   "verify.column.leg": "Beinlänge (m)",
   "verify.column.ratio": "Beinverhältnis",
-  "verify.column.length": "Schrittlänge (m)",
+  "verify.column.length": "Doppelschrittlänge (m)",
   "verify.column.height": "Schritthöhe (m)",
   "verify.column.start": "Zehen am Anfang (m)",
   "verify.column.contact": "Zehen beim Aufsetzen (m)",
@@ -107,7 +108,7 @@ export const verificationDe: Readonly<Record<keyof typeof verificationEn, string
   "verify.lowered": "Hüfte bis zu {{centimetres}} cm tiefer",
   "verify.reach": "in {{count}} Bildern außer Reichweite",
   "verify.table.caption":
-    "Mittelwerte über ganze Schritte. Rutschen ist die mittlere Geschwindigkeit der Füße am Boden.",
+    "Mittelwerte über ganze Doppelschritte (von einem Aufsetzen eines Fußes bis zu seinem nächsten). Rutschen ist die mittlere Geschwindigkeit der Füße am Boden.",
   "verify.export": "{{avatar}} als {{format}}",
   "verify.angles": "Beinwinkel der Quelle",
   "verify.angles.caption":

@@ -3478,11 +3478,11 @@ export interface components {
          * @description The walk of an avatar, compared with the source.
          *
          *     `leg_ratio` is its leg length over the source's, `length_ratio` and `height_ratio` the same
-         *     ratios of mean step lengths and heights (null without steps). `lifts_agree`: it lifts each foot
-         *     as often as the source. Slides are speeds of its feet while the *source's* are down: `slide_m_s`
-         *     as shown here, `slide_before_m_s` before the feet were locked, null if they are not. With locked
-         *     feet, `lowered_m` is how far the hips came down at most, and `out_of_reach` counts frames in
-         *     which a foot could not be kept in place.
+         *     ratios of mean stride lengths and step heights (null without strides). `lifts_agree`: it lifts
+         *     each foot as often as the source. Slides are speeds of its feet while the *source's* are down:
+         *     `slide_m_s` as shown here, `slide_before_m_s` before the feet were locked, null if they are not.
+         *     With locked feet, `lowered_m` is how far the hips came down at most, and `out_of_reach` counts
+         *     frames in which a foot could not be kept in place.
          */
         readonly AvatarWalkerView: {
             /** Foot Slide M S */
@@ -3503,6 +3503,8 @@ export interface components {
             readonly mean_step_height_m: number | null;
             /** Mean Step Length M */
             readonly mean_step_length_m: number | null;
+            /** Mean Stride Length M */
+            readonly mean_stride_length_m: number | null;
             /** Name */
             readonly name: string;
             /** Out Of Reach */
@@ -3513,8 +3515,8 @@ export interface components {
             readonly slide_m_s: number | null;
             /** Stature M */
             readonly stature_m: number;
-            /** Steps */
-            readonly steps: readonly components["schemas"]["WalkStepView"][];
+            /** Strides */
+            readonly strides: readonly components["schemas"]["WalkStrideView"][];
             /** Thigh Share */
             readonly thigh_share: number;
             /** Toe Paths */
@@ -9080,9 +9082,10 @@ export interface components {
          * WalkerView
          * @description The walk of one body, the source or an avatar.
          *
-         *     `leg_length_m` is thigh plus shin, `thigh_share` the thigh's part of it. Means are null without
-         *     a complete step. `foot_slide_m_s` is the mean speed of its feet over the ground while they are
-         *     down, null if none is.
+         *     `leg_length_m` is thigh plus shin, `thigh_share` the thigh's part of it. A stride leads from
+         *     a contact of a foot to the next one of the same foot, a step to the next one of the other.
+         *     Means are null without a complete stride or step. `foot_slide_m_s` is the mean speed of its
+         *     feet over the ground while they are down, null if none is.
          */
         readonly WalkerView: {
             /** Foot Slide M S */
@@ -9093,10 +9096,12 @@ export interface components {
             readonly mean_step_height_m: number | null;
             /** Mean Step Length M */
             readonly mean_step_length_m: number | null;
+            /** Mean Stride Length M */
+            readonly mean_stride_length_m: number | null;
             /** Name */
             readonly name: string;
-            /** Steps */
-            readonly steps: readonly components["schemas"]["WalkStepView"][];
+            /** Strides */
+            readonly strides: readonly components["schemas"]["WalkStrideView"][];
             /** Thigh Share */
             readonly thigh_share: number;
             /** Toe Paths */
@@ -9154,13 +9159,13 @@ export interface components {
             readonly walks: number;
         };
         /**
-         * WalkStepView
-         * @description One lift of a foot, from leaving the ground to the next contact.
+         * WalkStrideView
+         * @description One stride: a lift of a foot, from leaving the ground to its next contact.
          *
          *     `length_m` is how far the ball moves forward, `height_m` from its lowest to its highest
          *     position, `contact_height_m` its height above the ground at the contact.
          */
-        readonly WalkStepView: {
+        readonly WalkStrideView: {
             /** Contact Height M */
             readonly contact_height_m: number;
             /** Contact S */

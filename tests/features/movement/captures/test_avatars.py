@@ -34,8 +34,8 @@ def test_a_walk_keeps_its_steps_on_every_avatar(lab: Lab, walk: Json) -> None:
     assert (reply["frames"], reply["rate_hz"], reply["lock_feet"]) == (150, 30.0, False)
     assert len(reply["times_s"]) == 150
     source = reply["source"]
-    assert len(source["steps"]) >= 7
-    assert source["mean_step_length_m"] == pytest.approx(SPEED_M_S, rel=0.02)
+    assert len(source["strides"]) >= 7
+    assert source["mean_stride_length_m"] == pytest.approx(SPEED_M_S, rel=0.02)
     assert source["mean_step_height_m"] == pytest.approx(LIFT_M, rel=0.05)
     assert [avatar["name"] for avatar in reply["avatars"]] == ["130cm", "165cm", "190cm"]
     assert reply["lifts_agree"] is True
@@ -47,7 +47,7 @@ def test_a_walk_keeps_its_steps_on_every_avatar(lab: Lab, walk: Json) -> None:
         assert (avatar["slide_before_m_s"], avatar["lowered_m"]) == (None, None)
         for path in avatar["toe_paths"]:
             assert len(path["forward_m"]) == len(path["height_m"]) == 150
-    lengths = [avatar["mean_step_length_m"] for avatar in reply["avatars"]]
+    lengths = [avatar["mean_stride_length_m"] for avatar in reply["avatars"]]
     assert lengths == sorted(lengths)
     assert reply["unmapped_body_joints"] == ["UpperChest"]
 
