@@ -1,7 +1,7 @@
 import { loadMujoco, type Mujoco } from "@shared/avatar/mujoco";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { BodiesEngine } from "./engine";
-import { goalsAt, physicsSetup } from "./testing";
+import { goalsAt, physicsSetup } from "./testing/person";
 
 const FRAME_S = 1 / 90;
 let mujoco: Mujoco;

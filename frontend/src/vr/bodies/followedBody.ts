@@ -99,7 +99,6 @@ export class FollowedBody implements RemoteBody {
   }
 
   change(order: AvatarOrder): Readonly<Record<string, number>> {
-    this.avatar.views.renewed();
     this.avatar.switches.apply(ordered(this.configured, order));
     return this.avatar.switches.heldRad;
   }

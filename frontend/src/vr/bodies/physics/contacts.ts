@@ -45,7 +45,8 @@ export class Contacts {
     for (let row = 0; row < this.count; row++) {
       const contact = all.get(row);
       const isSame =
-        contact?.dist === this.distanceM(row) &&
+        contact !== undefined &&
+        Object.is(contact.dist, this.distanceM(row)) &&
         contact.geom1 === this.geom(row, 0) &&
         contact.geom2 === this.geom(row, 1);
       contact?.delete();

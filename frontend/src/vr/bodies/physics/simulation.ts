@@ -121,6 +121,7 @@ export class PhysicsAvatar {
 
   /** Set the pose of the hips at the time of the next `stepTo`: position and rotation (7). */
   setHips(pose: Float64Array): void {
+    this.views.renewed();
     const { teleports } = this.hips;
     if (!this.hips.goTo(pose)) this.ignoredInputs += 1;
     if (this.hips.teleports > teleports) this.softContacts.softenAll();
@@ -140,13 +141,14 @@ export class PhysicsAvatar {
 
   /** Go on at this moment after a gap: hips and limbs move to the next pose gently. */
   catchUp(hips: Float64Array, fastestRadS: number): void {
+    this.views.renewed();
     if (this.hips.teleport(hips)) this.softContacts.softenAll();
     this.fastestRadS = fastestRadS;
   }
 
   /** Simulate up to the step nearest to this time. */
   stepTo(timeS: number): void {
-    const { views } = this;
+    const views = this.views.renewed();
     const stepS = views.timestepS;
     if (!(timeS >= this.timeS - stepS)) {
       throw new SimulationError(`Time ${timeS} s lies before the avatar's, ${this.timeS} s.`);

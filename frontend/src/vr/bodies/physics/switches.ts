@@ -70,6 +70,7 @@ export class Switches {
 
   /** Bring the model to these settings; those of parts and axes that it lacks have no effect. */
   apply(settings: RunningSettings): void {
+    this.views.renewed();
     this.setGravity(settings.gravity);
     this.selfCollision = settings.selfCollision;
     this.layers = settings.layers;
@@ -103,7 +104,7 @@ export class Switches {
         `A delay of ${delayS} s is not possible: this model can add 0 to ${this.longestDelayS} s.`,
       );
     }
-    this.views.actuatorDelay.fill(delayS);
+    this.views.renewed().actuatorDelay.fill(delayS);
   }
 
   /** Move casts that are not yet at their angle; called for every frame. */
@@ -264,7 +265,7 @@ export class Boxes {
       const valid = [...this.geoms.keys()].join(", ") || "none";
       throw new SimulationError(`The scene has no ${unknown}: name one of ${valid}.`);
     }
-    const { geomContype, geomConaffinity } = this.views;
+    const { geomContype, geomConaffinity } = this.views.renewed();
     for (const [name, geom] of this.geoms) {
       const [contype, conaffinity] = names.includes(name)
         ? (this.masks.get(geom) as readonly [number, number])

@@ -3,10 +3,10 @@ import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { AXES } from "@shared/avatar/anatomy.generated";
 import type { Goals } from "@shared/avatar/goals";
-import type { ConfigurationFile } from "./physics/settings";
-import type { AvatarAnswer, PhysicsSetup } from "./setup";
+import type { ConfigurationFile } from "../physics/settings";
+import type { AvatarAnswer, PhysicsSetup } from "../setup";
 
-export const VECTORS = resolve(import.meta.dirname, "../../../../tests/vectors/avatar");
+export const VECTORS = resolve(import.meta.dirname, "../../../../../tests/vectors/avatar");
 export const bodyXml = (): string => readFileSync(resolve(VECTORS, "body.xml"), "utf8");
 
 const DEGREES = 180 / Math.PI;
