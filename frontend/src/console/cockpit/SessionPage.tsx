@@ -15,6 +15,7 @@ import { titleKey, useAlarms } from "./alarms/alarms";
 import { SignalStrip } from "./alarms/SignalStrip";
 import { TelemetryCard } from "./alarms/TelemetryCard";
 import { AvatarPanel, isChangeable } from "./avatar/AvatarPanel";
+import { BodyPanel, knowsBody } from "./body/BodyPanel";
 import classes from "./Cockpit.module.css";
 import { DevicesPanel } from "./devices/DevicesPanel";
 import { Header } from "./Header";
@@ -153,6 +154,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
             onClose={avatars.close}
           />
         )}
+        {!ended && can("run") && knowsBody(session) && <BodyPanel session={session} live={live} />}
         {session.kind === "expert" && <SuggestionsPanel session={session} />}
         <NotesPanel session={session} send={live.send} sending={live.sending} />
         <ScoresPanel session={session} />

@@ -1,6 +1,7 @@
 /** The console's texts in German. */
 import { formDe } from "@shared/forms/texts";
 import { alarmsDe } from "../cockpit/alarms/texts";
+import { bodyPanelDe } from "../cockpit/body/texts";
 import { sideDe } from "../cockpit/record/texts";
 import { commandsDe } from "../cockpit/session/texts";
 import { sessionDe } from "../cockpit/step/texts";
@@ -11,6 +12,7 @@ export const de: Record<keyof typeof en, string> = {
   ...alarmsDe,
   ...commandsDe,
   ...sessionDe,
+  ...bodyPanelDe,
   ...sideDe,
   "app.name": "Reembody",
   "app.studies": "Studien",

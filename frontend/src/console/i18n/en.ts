@@ -1,6 +1,7 @@
 /** The console's texts in English; `de.ts` has the same keys. */
 import { formEn } from "@shared/forms/texts";
 import { alarmsEn } from "../cockpit/alarms/texts";
+import { bodyPanelEn } from "../cockpit/body/texts";
 import { sideEn } from "../cockpit/record/texts";
 import { commandsEn } from "../cockpit/session/texts";
 import { sessionEn } from "../cockpit/step/texts";
@@ -10,6 +11,7 @@ export const en = {
   ...alarmsEn,
   ...commandsEn,
   ...sessionEn,
+  ...bodyPanelEn,
   ...sideEn,
   "app.name": "Reembody",
   "app.studies": "Studies",

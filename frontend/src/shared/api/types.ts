@@ -139,6 +139,7 @@ export interface Command {
   readonly height_m?: { readonly stated: number; readonly matched: number };
   readonly paper_consent?: { readonly place: string; readonly reason: string };
   readonly avatar_changes?: AvatarChanges;
+  readonly tracker_shift?: Schemas["TrackerShift"];
 }
 
 /** What the headset reports several times a second; not part of the OpenAPI description. */

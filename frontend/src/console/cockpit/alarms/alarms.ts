@@ -91,7 +91,10 @@ export const titleKey = (alarm: ShownAlarm): Key => `alarm.${knownCode(alarm.cod
 
 /** Whether the participant waits for somebody to come. */
 export const isCall = (alarm: ShownAlarm | undefined): boolean =>
-  alarm?.code === "help_asked" || alarm?.code === "question_asked";
+  CALLS.some((code) => code === alarm?.code);
+
+/** Alarms with which the participant calls the experimenter. */
+export const CALLS = ["stop_asked", "help_asked", "question_asked"] as const;
 
 /** The text of the remedy; while the phase is paused because of the alarm, that it is paused. */
 export function remedyKey(alarm: ShownAlarm, session: SessionView): Key {

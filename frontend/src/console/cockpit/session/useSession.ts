@@ -14,7 +14,7 @@ import { useEffect, useMemo, useState } from "react";
 import { checkSignIn } from "../../account";
 import type { Key } from "../../i18n";
 import { sessionQuery } from "../../queries";
-import type { Storage } from "../alarms/alarms";
+import { CALLS, type Storage } from "../alarms/alarms";
 import { TelemetryStore } from "./telemetryStore";
 
 /** A command that came too late: another operator was first. */
@@ -218,4 +218,4 @@ export function changesBetween(before: SessionView, after: SessionView): readonl
 }
 
 const calls = ({ alarms }: SessionView): boolean =>
-  alarms.some(({ code }) => code === "question_asked" || code === "help_asked");
+  alarms.some(({ code }) => CALLS.some((one) => one === code));

@@ -1,0 +1,56 @@
+/** Texts of the panel that shows how the headset tracks and is calibrated to the body. */
+export const bodyPanelEn = {
+  "body.title": "Tracking and calibration",
+  "body.part": "Part",
+  "body.known": "Known",
+  "body.off": "Off by",
+  "body.goal.Head": "Head",
+  "body.goal.LeftHand": "Left hand",
+  "body.goal.RightHand": "Right hand",
+  "body.goal.LeftLowerLeg": "Left shin",
+  "body.goal.RightLowerLeg": "Right shin",
+  "body.goal.Hips": "Hips",
+  "body.state.tracked": "measured",
+  "body.state.inferred": "computed",
+  "body.state.lost": "lost",
+  "body.stature": "Calibrated to a height of {{height}} cm",
+  "body.notices": "The calibration noticed",
+  "body.wanted":
+    "The headset is asked to calibrate again. A running task is paused; resume it afterwards.",
+  "body.calibrate": "Calibrate again",
+  "body.shift": "Shift a tracker by hand",
+  "body.shift.help":
+    "From where the tracker says, as the part is held in the T-pose. Zeros take a shift back; a new calibration ends it.",
+  "body.shift.right": "To the right",
+  "body.shift.up": "Up",
+  "body.shift.back": "To the back",
+  "body.shift.do": "Shift",
+};
+
+export const bodyPanelDe: Readonly<Record<keyof typeof bodyPanelEn, string>> = {
+  "body.title": "Tracking und Kalibrierung",
+  "body.part": "Körperteil",
+  "body.known": "Bekannt",
+  "body.off": "Abweichung",
+  "body.goal.Head": "Kopf",
+  "body.goal.LeftHand": "Linke Hand",
+  "body.goal.RightHand": "Rechte Hand",
+  "body.goal.LeftLowerLeg": "Linker Unterschenkel",
+  "body.goal.RightLowerLeg": "Rechter Unterschenkel",
+  "body.goal.Hips": "Hüfte",
+  "body.state.tracked": "gemessen",
+  "body.state.inferred": "berechnet",
+  "body.state.lost": "verloren",
+  "body.stature": "Kalibriert auf eine Größe von {{height}} cm",
+  "body.notices": "Bei der Kalibrierung fiel auf",
+  "body.wanted":
+    "Das Headset soll neu kalibrieren. Eine laufende Aufgabe pausiert; setzen Sie sie danach fort.",
+  "body.calibrate": "Neu kalibrieren",
+  "body.shift": "Einen Tracker von Hand verschieben",
+  "body.shift.help":
+    "Von dort, wo der Tracker ist, in den Richtungen des Körperteils in der T-Pose. Nullen nehmen eine Verschiebung zurück; eine neue Kalibrierung beendet sie.",
+  "body.shift.right": "Nach rechts",
+  "body.shift.up": "Nach oben",
+  "body.shift.back": "Nach hinten",
+  "body.shift.do": "Verschieben",
+};
