@@ -62,7 +62,7 @@ class Assets(StaticFiles):
     async def get_response(self, path: str, scope: Scope) -> Response:
         """Return the file, compressed if the client accepts gzip."""
         response = await super().get_response(path, scope)
-        policy = _policy(path)
+        policy = asset_headers(path)
         response.headers.update(policy)
         if not isinstance(response, FileResponse) or not _is_worth_it(response):
             return response
@@ -79,7 +79,7 @@ class Assets(StaticFiles):
         return Response(body, headers=headers, media_type=response.media_type)
 
 
-def _policy(path: str) -> Mapping[str, str]:
+def asset_headers(path: str) -> Mapping[str, str]:
     """Return the headers of a file: those of workers in isolated pages, and of WebAssembly's."""
     path = path.replace("\\", "/")  # Starlette gives paths with the system's separators.
     if not path.startswith(WASM_WORKERS):

@@ -12,6 +12,8 @@ from pathlib import Path
 
 from playwright.sync_api import BrowserContext, Page, Route
 
+from app.api.guards import SECURITY_HEADERS
+from app.api.pages import asset_headers
 from tests.support.node import install_packages, run_node
 
 FRONTEND = Path(__file__).resolve().parents[2] / "frontend"
@@ -27,7 +29,7 @@ await build({
   resolve: { alias: { "@shared": process.cwd() + "/src/shared" } },
   worker: { format: "es" },
   build: {
-    outDir, emptyOutDir: false, modulePreload: false,
+    outDir, emptyOutDir: false, modulePreload: false, assetsInlineLimit: 0,
     rolldownOptions: { input: entry, output: { entryFileNames } },
   },
 });
@@ -40,21 +42,26 @@ class Bundle:
 
     folder: Path
 
-    def open(self, context: BrowserContext, server_url: str) -> Page:
-        """Return a page that has run the module."""
+    def open(self, context: BrowserContext, server_url: str, document: str = DOCUMENT) -> Page:
+        """Return a page that has run the module in a document of the server, with its policy."""
         # What a test answers comes from nowhere, in Chromium's eyes: a worker from there may reach
         # this machine only if it is allowed to.
         context.grant_permissions(["local-network-access"], origin=server_url)
         context.route(f"{server_url}{BASE}**", lambda route: self._answer(route))
         page = context.new_page()
-        page.goto(server_url + DOCUMENT)
+        page.goto(server_url + document)
         page.evaluate("(address) => import(address)", f"{BASE}{SCRIPT}")
         return page
 
     def _answer(self, route: Route) -> None:
         name = route.request.url.partition(BASE)[2]
         kind = mimetypes.guess_type(name)[0] or "application/octet-stream"
-        route.fulfill(body=(self.folder / name).read_bytes(), content_type=kind)
+        body = (self.folder / name).read_bytes()
+        # The worker that simulates bodies has a policy of its own, which follows from its name.
+        asset = name.removeprefix("assets/")
+        path = f"wasm/{asset}" if asset.startswith("bodiesWorker-") else asset
+        headers = {**SECURITY_HEADERS, **asset_headers(path)}
+        route.fulfill(body=body, content_type=kind, headers=headers)
 
 
 def bundled(entry: str, folder: Path) -> Bundle:

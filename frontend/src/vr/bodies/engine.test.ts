@@ -1,7 +1,8 @@
 import { loadMujoco, type Mujoco } from "@shared/avatar/mujoco";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { BodiesEngine } from "./engine";
-import { goalsAt, physicsSetup } from "./testing/person";
+import { goalsAt } from "./testing/movement";
+import { physicsSetup } from "./testing/person";
 
 const FRAME_S = 1 / 90;
 let mujoco: Mujoco;

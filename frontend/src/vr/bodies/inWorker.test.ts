@@ -4,7 +4,8 @@ import { describe, expect, it } from "vitest";
 import type { Bodies } from "./bodies";
 import { openBodiesInPage } from "./inPage";
 import { BodiesInWorker } from "./inWorker";
-import { goalsAt, physicsSetup } from "./testing/person";
+import { goalsAt } from "./testing/movement";
+import { physicsSetup } from "./testing/person";
 import type { BodiesPort } from "./worker/messages";
 import { serveBodies, type WorkerPort } from "./worker/service";
 
