@@ -23,14 +23,14 @@ DOCUMENT = "/api/health"
 # Run in the frontend's folder, so that its packages are found.
 BUILD = """
 import { build } from "vite";
-const [entry, outDir, base, entryFileNames] = JSON.parse(process.argv[1]);
+const [entry, outDir, base, entryFileNames, format] = JSON.parse(process.argv[1]);
 await build({
   configFile: false, root: "src", base, logLevel: "warn", publicDir: false,
   resolve: { alias: { "@shared": process.cwd() + "/src/shared" } },
   worker: { format: "es" },
   build: {
     outDir, emptyOutDir: false, modulePreload: false, assetsInlineLimit: 0,
-    rolldownOptions: { input: entry, output: { entryFileNames } },
+    rolldownOptions: { input: entry, output: { entryFileNames, format } },
   },
 });
 """
@@ -66,7 +66,21 @@ class Bundle:
 
 def bundled(entry: str, folder: Path) -> Bundle:
     """Bundle the module at `entry`, a path below `frontend/src`, into `folder`."""
-    install_packages(FRONTEND)
-    arguments = json.dumps([str(FRONTEND / "src" / entry), str(folder), BASE, SCRIPT])
-    run_node("--input-type=module", "-e", BUILD, arguments, cwd=FRONTEND)
+    _build(entry, folder, "es")
     return Bundle(folder)
+
+
+def bundled_script(entry: str, folder: Path) -> Path:
+    """Bundle the module at `entry`, a path below `frontend/src`, into one classic script.
+
+    Such a script can be injected into a page before the page's own.
+    """
+    _build(entry, folder, "iife")
+    return folder / SCRIPT
+
+
+def _build(entry: str, folder: Path, module_format: str) -> None:
+    install_packages(FRONTEND)
+    source = str(FRONTEND / "src" / entry)
+    arguments = json.dumps([source, str(folder), BASE, SCRIPT, module_format])
+    run_node("--input-type=module", "-e", BUILD, arguments, cwd=FRONTEND)

@@ -161,9 +161,14 @@ export class BodiesInWorker implements Bodies {
     return this.hasFrame ? this.shown : null;
   }
 
+  /** Whether the worker has answered every frame and command. */
+  get isIdle(): boolean {
+    return this.frames.isIdle || this.failure !== null;
+  }
+
   /** Resolves when the worker has answered every frame and command: for clocks that tests step. */
   async idle(): Promise<void> {
-    while (!this.frames.isIdle && this.failure === null) {
+    while (!this.isIdle) {
       await new Promise((resolve) => setTimeout(resolve, 0));
     }
   }

@@ -61,6 +61,7 @@ export function useVisit(pairing: Pairing): VisitState {
       vr.current = new Vr({
         telemetry: client,
         token: pairing.token,
+        withFingers: false,
         onEnd: () => setVrState("left"),
         onFailure: fail,
       });

@@ -21,6 +21,7 @@ async function worn({ lateBy = 0, state = STATE } = {}) {
     prepareBodies: async () => bodies,
     scenery: { show: (view) => views.push(view) },
     withFingers: false,
+    onBodyWorn: () => undefined,
     onFailure: (error) => {
       throw error;
     },

@@ -6,10 +6,17 @@
  * (`docs/protocol.md`); `app/rehearsal/headset.py` is the same in Python, with the same order of
  * frames and reports.
  */
-import { GOAL_PARTS } from "@shared/avatar/goals";
-import type { Bodies } from "../bodies/bodies";
+import { GOAL_PARTS, type Goals } from "@shared/avatar/goals";
+import type { Bodies, BodiesFrame } from "../bodies/bodies";
 import { layoutsOf, Phases, type TaskLayout, type TimedRun } from "../tasks";
-import type { HeadsetState, PhaseOrder, ReportBody, TelemetryClient } from "../telemetry";
+import {
+  FINGER_VALUES_PER_FRAME,
+  type HeadsetState,
+  type PhaseOrder,
+  type ReportBody,
+  type TelemetryClient,
+  VALUES_PER_FRAME,
+} from "../telemetry";
 import type { GoalPart, GoalState, TrackedFrame, TrackingSource } from "../tracking/tracked";
 import type { Calibrator, Place, PrepareBodies, Scenery } from "./ports";
 import { Recorder } from "./recorder";
@@ -26,6 +33,8 @@ export interface HeadsetParts {
   readonly scenery: Scenery;
   /** Whether the streams of fingers were announced. */
   readonly withFingers: boolean;
+  /** Another body is worn from the next frame on, by its name; null is the configuration's. */
+  readonly onBodyWorn: (body: string | null) => void;
   /** Called once if nothing more can be recorded, or the bodies cannot be prepared. */
   readonly onFailure: (error: unknown) => void;
 }
@@ -43,10 +52,12 @@ export class Headset {
   /** Surfaces by parts of the boxes that are shown. */
   #touchCount = 0;
   #revision = 0;
-  #isUnchanged = false;
   #hasMoved = false;
   #goalStates = "";
+  readonly #fingers = new Float64Array(FINGER_VALUES_PER_FRAME);
   #timeS = 0;
+  #isFrozen = false;
+  readonly #freezable = new ShownPose();
 
   constructor(parts: HeadsetParts) {
     this.#parts = parts;
@@ -63,6 +74,16 @@ export class Headset {
   /** The time of the newest frame, s. */
   get timeS(): number {
     return this.#timeS;
+  }
+
+  /** The bodies as they were computed last; null before. */
+  get computed(): BodiesFrame | null {
+    return this.#bodies?.latest() ?? null;
+  }
+
+  /** Where the participant is in the visit. */
+  get place(): Place {
+    return this.#placeIn(this.#parts.telemetry.state);
   }
 
   get run(): TimedRun | null {
@@ -85,17 +106,29 @@ export class Headset {
     if (sleep === "gap" && lastS !== null) this.#phases.wake(lastS, timeS);
     if (sleep === "still") this.#phases.stop(timeS, "asleep");
     this.#follow(state, tracked);
+    // As this frame is shown: the frame in which the time is up still moves.
+    this.#isFrozen = this.#phases.run?.isFrozen ?? false;
     const bodies = this.#bodies;
     if (bodies !== null) {
-      const fingers = null;
-      bodies.step({ timeS, goals: calibrator.goals(tracked), fingers });
+      // A script or a capture moves joints; devices have to be calibrated first.
+      const goals =
+        this.#source.knownBody === null ? calibrator.goals(tracked) : placesOf(tracked.parts);
+      bodies.step({ timeS, goals, fingers: this.#fingersOf(tracked) });
       this.#perform(bodies, state, tracked);
     }
     const shown = this.#bodies?.latest() ?? null;
     const { run } = this.#phases;
     const place = this.#placeIn(state);
-    const isCurtainDrawn = false;
-    scenery.show({ timeS, place, state, tracked, bodies: shown, run, isCurtainDrawn });
+    scenery.show({
+      timeS,
+      place,
+      state,
+      tracked,
+      bodies: shown,
+      run,
+      isFrozen: this.#isFrozen,
+      isCurtainDrawn: false,
+    });
     this.#recorder.send(timeS);
   }
 
@@ -105,8 +138,12 @@ export class Headset {
    */
   leave(cause: string): void {
     if (this.#sleep.lastS !== null) this.#phases.stop(this.#sleep.lastS, cause);
-    this.#recorder.settleTargets();
-    this.#recorder.flush(this.#timeS);
+    this.#recorder.end(this.#timeS);
+  }
+
+  /** Stop the clock now, for a reason of the headset's own; the operator resumes. */
+  stop(cause: string): void {
+    this.#phases.stop(this.#timeS, cause);
   }
 
   dispose(): void {
@@ -123,9 +160,11 @@ export class Headset {
     const timeS = this.#timeS;
     const phases = this.#phases;
     this.#recorder.computed(shown);
+    if (!this.#isFrozen) this.#freezable.keep(shown);
     if (state.recording) {
       this.#reportGoals(tracked);
-      this.#recorder.frame(timeS, shown, phases.phaseId, phases.run?.clockRuns ?? false);
+      const seen = this.#isFrozen ? this.#freezable : shown;
+      this.#recorder.frame(timeS, seen, phases.phaseId, phases.run?.clockRuns ?? false);
     }
     const goesOn = telemetry.status.connected || telemetry.welcome.on_disconnect === "continue";
     const { run } = phases;
@@ -171,15 +210,9 @@ export class Headset {
 
   #changeAvatar({ avatar_changes: order }: HeadsetState): void {
     const bodies = this.#bodies;
-    // A cast is put on a body that has taken the participant's pose.
-    if (order === undefined || bodies === null || !this.#hasMoved) return;
-    const isKnown = order.revision === this.#revision;
-    if (isKnown && !this.#isUnchanged) return;
-    this.#isUnchanged = false;
+    if (order === undefined || bodies === null || order.revision === this.#revision) return;
     this.#revision = order.revision;
     const report = (held_rad: Readonly<Record<string, number>>, problem: string | null) => {
-      // Already reported with another body: a second report would reveal the new one.
-      if (isKnown) return;
       const { revision } = order;
       const applied = problem === null;
       const t_s = this.#timeS;
@@ -199,9 +232,7 @@ export class Headset {
     if (body !== this.#bodyWorn) {
       bodies.wear(body);
       this.#bodyWorn = body;
-      // Changes in force apply to this body, too, once it has taken the participant's pose.
-      this.#hasMoved = false;
-      this.#isUnchanged = true;
+      this.#parts.onBodyWorn(body);
     }
     const orderedS = order.latency_ms / 1000;
     bodies.setLatency(orderedS);
@@ -249,6 +280,15 @@ export class Headset {
     for (const body of bodies) this.#recorder.report(body);
   }
 
+  /** The fingers of both hands, NaN where a hand is not tracked; null if they are not recorded. */
+  #fingersOf({ hands }: TrackedFrame): Float64Array | null {
+    if (!this.#parts.withFingers) return null;
+    const values = this.#fingers.fill(Number.NaN);
+    if (hands.left.fingers !== null) values.set(hands.left.fingers, 0);
+    if (hands.right.fingers !== null) values.set(hands.right.fingers, values.length / 2);
+    return values;
+  }
+
   #placeIn(state: HeadsetState): Place {
     if (state.status === "completed" || state.status === "aborted") return "over";
     if (state.status === "withdrawn") return "over";
@@ -256,3 +296,25 @@ export class Headset {
     return state.step_kind === "materialise" ? "stepping_in" : "standby";
   }
 }
+
+/** What the participant saw last: it stays in view while the avatar is frozen. */
+class ShownPose {
+  readonly remote = new Float64Array(VALUES_PER_FRAME);
+  readonly #fingers = new Float64Array(FINGER_VALUES_PER_FRAME);
+  remoteFingers: Float64Array | null = null;
+
+  keep({ remote, remoteFingers }: BodiesFrame): void {
+    this.remote.set(remote);
+    if (remoteFingers !== null) this.#fingers.set(remoteFingers);
+    this.remoteFingers = remoteFingers === null ? null : this.#fingers;
+  }
+}
+
+const placesOf = (parts: TrackedFrame["parts"]): Goals => ({
+  Hips: parts.Hips.place,
+  Head: parts.Head.place,
+  LeftHand: parts.LeftHand.place,
+  RightHand: parts.RightHand.place,
+  LeftLowerLeg: parts.LeftLowerLeg.place,
+  RightLowerLeg: parts.RightLowerLeg.place,
+});

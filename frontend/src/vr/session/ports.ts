@@ -31,6 +31,8 @@ export interface View {
   readonly bodies: BodiesFrame | null;
   /** The phase that runs; null between phases. */
   readonly run: TimedRun | null;
+  /** The avatar stands still; the view never does. */
+  readonly isFrozen: boolean;
   /** The room is hidden: the participant is in the pause room, or between two places. */
   readonly isCurtainDrawn: boolean;
 }

@@ -14,6 +14,13 @@ function recorder() {
   return { sink, made: new Recorder(sink, { withFingers: false, onFailure }) };
 }
 
+/** Draw a frame whose bodies are computed at once. */
+function draw(made: Recorder, frame: number, phaseId = 0, clockRuns = false): void {
+  const shown = computedAt(at(frame));
+  made.computed(shown);
+  made.frame(at(frame), shown, phaseId, clockRuns);
+}
+
 const numbers = (count: number) => Array.from({ length: count }, (_, i) => i);
 const MATERIALISED = { kind: "materialised", t_s: 1 } as const;
 
@@ -21,7 +28,7 @@ describe("the recorder", () => {
   it("sends six frames of both streams at a time, and the rest when flushed", () => {
     const { sink, made } = recorder();
     for (const frame of numbers(14)) {
-      made.frame(at(frame), computedAt(at(frame)), 0, false);
+      draw(made, frame);
       made.send(at(frame));
     }
     const sizes = () =>
@@ -35,7 +42,7 @@ describe("the recorder", () => {
   it("never sends a batch that spans two phases", () => {
     const { sink, made } = recorder();
     for (const frame of numbers(12)) {
-      made.frame(at(frame), computedAt(at(frame)), frame < 4 ? 0 : 7, frame >= 8);
+      draw(made, frame, frame < 4 ? 0 : 7, frame >= 8);
       made.send(at(frame));
     }
     made.flush(1);
@@ -54,9 +61,9 @@ describe("the recorder", () => {
 
   it("sends the frames that led to a report before the report", () => {
     const { sink, made } = recorder();
-    for (const frame of numbers(8)) made.frame(at(frame), computedAt(at(frame)), 0, false);
+    for (const frame of numbers(8)) draw(made, frame);
     made.report(MATERIALISED);
-    made.frame(at(8), computedAt(at(8)), 0, false);
+    draw(made, 8);
     made.send(1);
     expect(sink.sent.map(({ what }) => what)).toEqual([
       "frames",

@@ -23,6 +23,9 @@ const FRAMES_PER_BATCH = 6;
 /** Rows that may wait for their targets; 1.4 s at 90 Hz. Beyond that the last target is kept. */
 const ROWS = 128;
 
+/** What is drawn of the remote body. */
+export type Seen = Pick<BodiesFrame, "remote" | "remoteFingers">;
+
 /** A report that waits for the rows before it. */
 interface WaitingReport {
   readonly body: ReportBody;
@@ -93,21 +96,20 @@ export class Recorder {
   }
 
   /**
-   * Record the frame at `timeS`, in which `shown` is what the participant sees.
-   *
-   * Call `computed` with `shown` afterwards: its input may be this frame's.
+   * Record the frame at `timeS`, in which `seen` is what the participant sees. Its target is already
+   * known if the bodies were computed for this very frame; else it waits for `computed`.
    */
-  frame(timeS: number, shown: BodiesFrame, phaseId: number, clockRuns: boolean): void {
+  frame(timeS: number, seen: Seen, phaseId: number, clockRuns: boolean): void {
     if (this.#made - this.#sent === ROWS) this.#makeRoom();
     const row = this.#made % ROWS;
     this.#timesS[row] = timeS;
     this.#flags[row] = clockRuns ? ACTIVE : 0;
     this.#phaseIds[row] = phaseId;
     this.#activeS[row] = 0;
-    this.#actuals.set(row, shown.remote);
-    if (this.#withFingers) this.#actualFingers.set(row, shown.remoteFingers);
+    this.#actuals.set(row, seen.remote);
+    if (this.#withFingers) this.#actualFingers.set(row, seen.remoteFingers);
     this.#made++;
-    this.computed(shown);
+    if (this.#lastLocalS === timeS) this.#settleTargets();
   }
 
   /** Set the phase's active time at the frame recorded last. */
@@ -138,14 +140,20 @@ export class Recorder {
     }
   }
 
-  /** Send everything recorded so far, in smaller batches if need be. */
+  /** Send everything recorded so far as soon as its targets are known, in smaller batches. */
   flush(closedAtS: number): void {
     this.#due = this.#made;
     this.send(closedAtS);
   }
 
-  /** The last targets stay in force for rows that would otherwise wait forever. */
-  settleTargets(): void {
+  /** Send everything now: no more will be computed. */
+  end(closedAtS: number): void {
+    this.#settleTargets();
+    this.flush(closedAtS);
+  }
+
+  /** Give all rows that still wait the newest target. */
+  #settleTargets(): void {
     while (this.#known < this.#made) {
       const row = this.#known % ROWS;
       this.#targets.set(row, this.#lastLocal);
@@ -164,7 +172,7 @@ export class Recorder {
   }
 
   #makeRoom(): void {
-    this.settleTargets();
+    this.#settleTargets();
     this.flush(this.#timesS[(this.#made - 1) % ROWS] as number);
   }
 

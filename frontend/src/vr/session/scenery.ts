@@ -21,7 +21,8 @@ export class WorldScenery implements Scenery {
     this.#limbs = limbs;
   }
 
-  show({ timeS, place, state, tracked, bodies, run, isCurtainDrawn }: View): void {
+  show(view: View): void {
+    const { timeS, place, state, tracked, bodies, run } = view;
     const isTask = run instanceof BoxRun;
     this.#world.show({
       timeS,
@@ -32,8 +33,8 @@ export class WorldScenery implements Scenery {
       task: isTask ? this.#taskOf(run) : null,
       remainingS: run === null ? null : remainingS(run, timeS),
       completed: isTask ? run.completed : null,
-      isFrozen: run?.isFrozen ?? false,
-      isCurtainDrawn,
+      isFrozen: view.isFrozen,
+      isCurtainDrawn: view.isCurtainDrawn,
     });
   }
 

@@ -2,27 +2,28 @@
  * VR itself: the immersive session of WebXR, three's renderer, and the headset that they drive.
  *
  * One `Vr` lasts as long as the page. Its immersive session may end and be entered again any number
- * of times; the bodies, the phase and its record go on where they were, paused.
+ * of times; the bodies, the phase and its record stay where they were, paused.
  */
-import { PerspectiveCamera, Scene, WebGLRenderer } from "three";
+import { PerspectiveCamera, WebGLRenderer } from "three";
+import { type BodiesInWorker, type BodiesSetup, openBodiesInWorker } from "../bodies";
+import { layoutsOf } from "../tasks";
 import type { TelemetryClient } from "../telemetry";
-import type { Headset } from "./headset";
+import { WebXrTracking } from "../tracking";
+import { paletteOf, STANDARD, World } from "../world";
+import { loadModel, requestAvatars } from "./avatars";
+import { Headset } from "./headset";
+import type { Granted, Inspection } from "./inspection";
+import { WorldScenery } from "./scenery";
+import { UsualOffsets } from "./usualOffsets";
 
 export interface VrParts {
   readonly telemetry: TelemetryClient;
   readonly token: string;
+  /** Whether the participant's fingers are recorded, as the client's hello said. */
+  readonly withFingers: boolean;
   /** The immersive session has ended, whoever ended it. */
   readonly onEnd: () => void;
   readonly onFailure: (error: unknown) => void;
-}
-
-/** What the device granted, and how it draws; part of the record of what the participant saw. */
-export interface Granted {
-  readonly features: readonly string[];
-  /** Hz as the device says; null if it does not. What is drawn is measured from the frames. */
-  readonly frameRateHz: number | null;
-  /** Fixed foveation as set, 0 (none) to 1 (the most); null where it cannot be set. */
-  readonly foveation: number | null;
 }
 
 /** 90 Hz is what the recording and the study's bodies are made for. */
@@ -31,44 +32,72 @@ const FRAME_RATE_HZ = 90;
 const PATIENCE_MS = 2000;
 /** three's own default is the most, which blurs text and hands at the edge of the view. */
 const FOVEATION = 0.3;
+const NEAR_M = 0.05;
+const FAR_M = 50;
 
-const FEATURES = {
-  requiredFeatures: ["local-floor"],
-  optionalFeatures: ["hand-tracking", "bounded-floor", "body-tracking", "tracked-sources"],
-} as const;
+const REQUIRED = ["local-floor"] as const;
+const OPTIONAL = ["hand-tracking", "bounded-floor", "body-tracking", "tracked-sources"] as const;
 
 export class Vr {
   readonly #parts: VrParts;
   readonly #renderer: WebGLRenderer;
-  readonly #scene = new Scene();
-  readonly #camera = new PerspectiveCamera(70, 1, 0.05, 50);
-  #headset: Headset | null = null;
+  readonly #camera = new PerspectiveCamera(70, 1, NEAR_M, FAR_M);
+  readonly #world: World;
+  readonly #headset: Headset;
+  readonly #tracking: WebXrTracking;
+  readonly #calibrator = new UsualOffsets();
+  #bodies: BodiesInWorker | null = null;
   #session: XRSession | null = null;
   #granted: Granted | null = null;
+  #frames = 0;
+  #statureM = 0;
+  #isRendering = true;
 
   constructor(parts: VrParts) {
     this.#parts = parts;
+    const { telemetry, withFingers, onFailure } = parts;
+    const { tasks, appearance, language } = telemetry.welcome;
     this.#renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
     this.#renderer.xr.enabled = true;
     this.#renderer.xr.setReferenceSpaceType("local-floor");
+    const layouts = layoutsOf(tasks);
+    const palette = appearance === undefined ? STANDARD : paletteOf(appearance);
+    this.#world = new World({ layouts, palette, language });
+    this.#tracking = new WebXrTracking({
+      onSpace: (space) => this.#renderer.xr.setReferenceSpace(space),
+      onReset: () => this.#headset.stop("recentred"),
+    });
+    this.#headset = new Headset({
+      telemetry,
+      source: this.#tracking,
+      calibrator: this.#calibrator,
+      scenery: new WorldScenery(this.#world, [...layouts.keys()]),
+      prepareBodies: (statureM, named) => this.#prepareBodies(statureM, named),
+      onBodyWorn: (body) => this.#world.wear(body, this.#statureM),
+      withFingers,
+      onFailure,
+    });
+    globalThis.reembody = this.#inspection();
   }
 
-  get granted(): Granted | null {
-    return this.#granted;
+  get isShown(): boolean {
+    return this.#session !== null;
   }
 
-  /** Enter VR; call it in the handler of a click. */
+  /** Enter VR; call it in the handler of a click, in which browsers allow it. */
   async enter(): Promise<void> {
     const xr = navigator.xr;
     if (xr === undefined) throw new Error("This browser has no WebXR.");
+    // Also only allowed in the handler of a click.
+    this.#world.sounds.resume();
     const session = await xr.requestSession("immersive-vr", {
-      requiredFeatures: [...FEATURES.requiredFeatures],
-      optionalFeatures: [...FEATURES.optionalFeatures],
+      requiredFeatures: [...REQUIRED],
+      optionalFeatures: [...OPTIONAL],
     });
     this.#session = session;
     session.addEventListener("end", () => this.#ended(session));
     session.addEventListener("visibilitychange", () => {
-      if (session.visibilityState !== "visible") this.#headset?.leave(session.visibilityState);
+      if (session.visibilityState !== "visible") this.#headset.leave("asleep");
     });
     await requestFrameRate(session);
     // Before the session is set: later it would start the window's loop beside the session's.
@@ -82,28 +111,103 @@ export class Vr {
       frameRateHz: session.frameRate ?? null,
       foveation: this.#renderer.xr.getFoveation() ?? null,
     };
+    const space = this.#renderer.xr.getReferenceSpace();
+    if (space !== null) this.#tracking.begin(session, space);
   }
 
   /** End VR, if it is shown, and free what it used. */
   dispose(): void {
     void this.#session?.end().catch(() => undefined);
-    this.#headset?.dispose();
-    this.#headset = null;
+    this.#headset.dispose();
+    this.#world.dispose();
     this.#renderer.dispose();
+    globalThis.reembody = undefined;
   }
 
   #frame(timeMs: number, frame: XRFrame): void {
-    this.#headset?.frame(timeMs / 1000, frame);
-    this.#renderer.render(this.#scene, this.#camera);
+    this.#headset.frame(timeMs / 1000, frame);
+    this.#frames++;
+    if (this.#isRendering) this.#renderer.render(this.#world.scene, this.#camera);
   }
 
   #ended(session: XRSession): void {
     if (this.#session !== session) return;
     this.#session = null;
     this.#renderer.setAnimationLoop(null);
-    this.#headset?.leave("ended");
+    this.#headset.leave("asleep");
     void this.#parts.telemetry.flush().catch(() => undefined);
     this.#parts.onEnd();
+  }
+
+  /** The bodies for this participant, and beside them the models that they are drawn with. */
+  async #prepareBodies(statureM: number, named: readonly string[]): Promise<BodiesInWorker> {
+    const { telemetry, token, withFingers } = this.#parts;
+    this.#statureM = statureM;
+    this.#calibrator.scaleTo(statureM);
+    this.#world.wear(null, statureM);
+    if (telemetry.welcome.avatar !== "physics") {
+      const surfaces = [...layoutsOf(telemetry.welcome.tasks).values()].flatMap(
+        (layout) => layout.surfaces,
+      );
+      return this.#open({ avatar: "delayed_copy", statureM, surfaces, withFingers });
+    }
+    const avatars = await requestAvatars(token, statureM, named);
+    for (const [name, { humanoid }] of avatars) {
+      // Drawn as a plain body until its model is there; a study is not held up by a picture.
+      if (humanoid == null) continue;
+      loadModel(token, humanoid).then(
+        (model) => this.#world.addBody(name, model),
+        this.#parts.onFailure,
+      );
+    }
+    const [own, ...others] = avatars.values();
+    if (own === undefined) throw new Error("The session has no avatar.");
+    const listed = [own, ...others] as const;
+    return this.#open({ avatar: "physics", bodies: listed, withFingers });
+  }
+
+  /** In a worker, whose own script may make functions from text as MuJoCo does; this page may not. */
+  async #open(setup: BodiesSetup): Promise<BodiesInWorker> {
+    this.#bodies = await openBodiesInWorker(setup);
+    return this.#bodies;
+  }
+
+  #inspection(): Inspection {
+    const vr = this;
+    const { telemetry } = this.#parts;
+    return {
+      get state() {
+        return telemetry.state;
+      },
+      get status() {
+        return telemetry.status;
+      },
+      get place() {
+        return vr.#headset.place;
+      },
+      get run() {
+        return vr.#headset.run;
+      },
+      get granted() {
+        return vr.#granted;
+      },
+      get frames() {
+        return vr.#frames;
+      },
+      get isIdle() {
+        return vr.#bodies?.isIdle ?? true;
+      },
+      get isRendering() {
+        return vr.#isRendering;
+      },
+      set isRendering(isRendering: boolean) {
+        vr.#isRendering = isRendering;
+      },
+      get drawn() {
+        const { calls, triangles } = vr.#renderer.info.render;
+        return { calls, triangles };
+      },
+    };
   }
 }
 

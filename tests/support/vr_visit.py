@@ -1,0 +1,203 @@
+"""A whole visit with the headset's page: emulated headset, scripted participant, tablet, operator.
+
+The page is the one that is shipped, on the real server, with its own policy. Only the device is
+emulated (`frontend/src/vr/testing`): a script that is injected before the page's own gives the
+browser a headset, a clock that the test steps, and a participant who wears it. Everything else is
+real: pairing, the socket, the workers, the session and its record.
+"""
+
+import time
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import httpx2
+from playwright.sync_api import BrowserContext, Page
+
+from app.protocol import STEP_KINDS
+from app.rehearsal.body import Person
+from tests.e2e.scripted_tablet import ScriptedTablet
+from tests.support.bundle import bundled_script
+
+Json = dict[str, Any]
+FRAME_RATE_HZ = 90
+JOURNEY = "vr/testing/journey.ts"
+PATIENCE_MS = 20_000
+ENDED = ("completed", "aborted", "withdrawn")
+OVERTAKEN = ("stale", "not_now")
+"""Error codes of a command that came after the headset's own change."""
+FRAMES_AT_ONCE = 45
+
+
+def journey_script(folder: Path) -> Path:
+    """Bundle the emulated headset and its wearer into one script in `folder`."""
+    return bundled_script(JOURNEY, folder)
+
+
+class WornHeadset:
+    """The headset's page with an emulated headset that a scripted participant wears."""
+
+    def __init__(self, context: BrowserContext, script: Path, url: str) -> None:
+        self.url = url
+        self.page: Page = context.new_page()
+        self.page.add_init_script(path=script)
+
+    def open(self, code: str | None = None) -> None:
+        """Open the page, with the code of a pairing link."""
+        query = "" if code is None else f"?code={code}"
+        self.page.goto(f"{self.url}/vr{query}")
+
+    def wear(self, person: Person, seed: int = 1) -> None:
+        """Let this person wear the headset."""
+        foot = "left" if person.footedness == "left" else "right"
+        wish = {"statureM": person.stature_m, "seed": seed, "footedness": foot}
+        self.page.evaluate("(wish) => journey.wear(wish)", wish)
+
+    def enter(self, button: str = "Enter VR") -> None:
+        """Press the button and wait until the page draws its first frame in VR."""
+        self.page.get_by_role("button", name=button).click(timeout=PATIENCE_MS)
+        # `wait_for_function` would poll by frames, which come only when they are stepped.
+        self.until("globalThis.journey.headset.session !== null")
+        self.until("globalThis.reembody.granted !== null")
+
+    def until(self, condition: str, timeout_ms: float = PATIENCE_MS) -> None:
+        """Wait until a JavaScript expression is true, without drawing frames."""
+        self.page.wait_for_function(f"() => {condition}", polling=20, timeout=timeout_ms)
+
+    def step(self, frames: int) -> float:
+        """Draw frames; return the time of the last one, s."""
+        return float(self.page.evaluate("(frames) => journey.step(frames)", frames))
+
+    def tell(self, expression: str) -> Any:
+        """Return the value of a JavaScript expression in the page."""
+        return self.page.evaluate(f"() => {expression}")
+
+    def do(self, statement: str) -> None:
+        """Run a JavaScript statement in the page."""
+        self.page.evaluate(f"() => {{ {statement} }}")
+
+
+@dataclass
+class Visit:
+    """A session with an operator who issues commands, and a headset that a script wears.
+
+    `at_step` is called whenever another step begins, with its key; `drawn_s` is the time that the
+    headset has drawn.
+    """
+
+    operator: httpx2.Client
+    session_id: str
+    headset: WornHeadset
+    person: Person
+    at_step: Callable[[str], None] = lambda _: None
+    frames: int = 0
+    took_s: float = 0.0
+    _shown: str | None = field(default=None, init=False)
+
+    @property
+    def drawn_s(self) -> float:
+        """The time that the headset has drawn, s."""
+        return self.frames / FRAME_RATE_HZ
+
+    def view(self) -> Json:
+        """Return the session as its operator sees it."""
+        return ok(self.operator.get(f"/api/sessions/{self.session_id}"))
+
+    def command(self, view: Json, kind: str, **fields: Any) -> bool:
+        """Send a command; return whether it was not overtaken by another change."""
+        body = {
+            "command_id": str(uuid.uuid4()),
+            "expected_version": view["version"],
+            "type": kind,
+            **fields,
+        }
+        answer = self.operator.post(f"/api/sessions/{self.session_id}/commands", json=body)
+        if answer.is_success:
+            return True
+        code = answer.json()["error"]["code"]
+        assert code in OVERTAKEN, answer.text
+        return False
+
+    def perform(self, until: Callable[[Json], bool] = lambda _: False) -> Json:
+        """Play operator and wearer until the session has ended, or until a view is as asked."""
+        while True:
+            view = self.view()
+            if view["status"] in ENDED or until(view):
+                return view
+            current = view["current"]
+            if current is not None:
+                key = view["steps"][current["index"]]["key"]
+                if key != self._shown:
+                    self._shown = key
+                    self.at_step(key)
+            self._operate(view)
+            self.draw(FRAMES_AT_ONCE)
+
+    def draw(self, frames: int) -> None:
+        """Draw frames; the participant presses both grips while the figure waits to be entered."""
+        began_s = time.monotonic()
+        if self.headset.tell("globalThis.reembody?.place") == "stepping_in":
+            self.headset.do("journey.grip(true)")
+        else:
+            self.headset.do("journey.grip(false)")
+        self.headset.step(frames)
+        self.frames += frames
+        self.took_s += time.monotonic() - began_s
+
+    def _operate(self, view: Json) -> None:
+        if view["status"] == "planned":
+            self.command(view, "start")
+            return
+        if view["held"] is not None:
+            self.command(view, "override_stop", reason="Nobody is unwell: it is a script.")
+            return
+        current = view["current"]
+        step = view["steps"][current["index"]]
+        spec = STEP_KINDS[step["kind"]]
+        if spec.command == "complete_step" and spec.screen == "waiting":
+            self.command(view, "complete_step", **self._measured(spec.key))
+        elif spec.family == "timed":
+            if current["status"] == "ready":
+                self.command(view, "begin_phase")
+            elif current["status"] == "paused" and not current["resuming"]:
+                self.command(view, "resume")
+
+    def _measured(self, kind: str) -> Json:
+        if kind != "height":
+            return {}
+        stature_m = round(self.person.stature_m, 3)
+        return {"height_m": {"stated": round(stature_m, 2), "matched": stature_m}}
+
+
+def begun(
+    operator: httpx2.Client,
+    context: BrowserContext,
+    script: Path,
+    url: str,
+    study: str,
+    *,
+    time_scale: float,
+) -> tuple[Visit, ScriptedTablet]:
+    """Create a simulated session with a paired tablet and a worn headset, not started yet."""
+    fields = {"kind": "simulated", "language": "en", "time_scale": time_scale}
+    session_id = str(ok(operator.post(f"/api/studies/{study}/sessions", json=fields))["id"])
+
+    def code(device: str) -> str:
+        path = f"/api/sessions/{session_id}/pairings"
+        return str(ok(operator.post(path, json={"device": device}))["code"])
+
+    tablet = ScriptedTablet(url, code("tablet"))
+    headset = WornHeadset(context, script, url)
+    headset.open(code("headset"))
+    headset.wear(tablet.person)
+    headset.enter()
+    headset.do("reembody.isRendering = false")
+    return Visit(operator, session_id, headset, tablet.person), tablet
+
+
+def ok(answer: httpx2.Response) -> Any:
+    """Return the body of an answer that must be a success."""
+    assert answer.is_success, f"{answer.request.method} {answer.request.url}: {answer.text}"
+    return answer.json()
