@@ -5,8 +5,7 @@ from typing import Any
 
 from app.protocol.avatar import file_of
 from app.science.avatar.mjcf.gains import default_configuration
-from tests.e2e.conftest import ContextFactory
-from tests.support.browser import PageWatch
+from tests.support.browser import ContextFactory, PageWatch
 from tests.support.bundle import bundled
 from tests.support.server import LiveServer
 
