@@ -13,6 +13,7 @@ import { Mark } from "@shared/ui/Mark";
 import { ErrorNotice, errorTexts, Notice } from "@shared/ui/Notice";
 import { useMutation } from "@tanstack/react-query";
 import { type JSX, type ReactNode, useEffect, useRef, useState } from "react";
+import { Desktop, isDesktopAddress } from "../desktop/Desktop";
 import { useTexts } from "../i18n";
 import classes from "./Enter.module.css";
 import { forgetPairing, type Pairing, pair, storedPairing, storePairing } from "./pairing";
@@ -166,6 +167,7 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
   const { t, language, setLanguage } = useTexts();
   const support = useSupport();
   const visit = useVisit(pairing);
+  const [isOnScreen] = useState(isDesktopAddress);
   const { failure, welcome } = visit;
   const isUnpaired = failure !== null && UNPAIRED.has(failure.code);
   useEffect(() => {
@@ -179,6 +181,7 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
     isSpoken.current = true;
     if (spoken !== language) setLanguage(spoken);
   }, [spoken, language, setLanguage]);
+  if (isOnScreen && !visit.isOver && failure === null) return <Desktop visit={visit} />;
   return (
     <Frame isSimulated={welcome !== null && welcome.time_scale !== 1}>
       <div>

@@ -1,5 +1,6 @@
 /** The session that this headset takes part in: its connection, and whether VR is shown. */
 import { useCallback, useEffect, useRef, useState } from "react";
+import { listenTo } from "../desktop/input";
 import type { Vr } from "../session";
 import {
   type Failure,
@@ -9,6 +10,7 @@ import {
   TelemetryError,
   type Welcome,
 } from "../telemetry";
+import { DesktopSource } from "../tracking";
 import type { Pairing } from "./pairing";
 
 /** `left`: VR was shown and is not any more. */
@@ -26,9 +28,14 @@ export interface VisitState {
   readonly problem: string | null;
   /** Show VR; call it in the handler of a click, which browsers demand. */
   readonly enter: () => void;
+  /** Show the study on this screen instead, moved by mouse and keyboard; returns how to end it. */
+  readonly showOnScreen: (host: HTMLElement) => () => void;
 }
 
 const OVER = new Set(["completed", "aborted", "withdrawn"]);
+
+/** The stature of somebody of whom none is known yet, m. */
+const USUAL_STATURE_M = 1.72;
 
 /** The name under which the client says hello. */
 const NAME = "reembody headset page";
@@ -91,6 +98,17 @@ export function useVisit(pairing: Pairing): VisitState {
     );
   }, [fail]);
 
+  const showOnScreen = useCallback(
+    (host: HTMLElement) => {
+      const statureM = telemetry?.state.participant.stature_m ?? USUAL_STATURE_M;
+      const source = new DesktopSource(statureM);
+      vr.current?.showOnScreen(host, source);
+      setVrState("shown");
+      return listenTo(host, source);
+    },
+    [telemetry],
+  );
+
   return {
     welcome: telemetry?.welcome ?? null,
     isReady: telemetry !== null,
@@ -100,6 +118,7 @@ export function useVisit(pairing: Pairing): VisitState {
     vr: vrState,
     problem,
     enter,
+    showOnScreen,
   };
 }
 

@@ -25,7 +25,10 @@ export class UsualOffsets implements Calibrator {
   goals(tracked: TrackedFrame): Goals {
     const { parts } = tracked;
     const at = (part: GoalPart) => {
-      const place = part === "Head" ? tracked.eyes : parts[part].place;
+      const { device, place: own } = parts[part];
+      // These are joints already.
+      if (device === "joint" || device === "hand") return own;
+      const place = part === "Head" ? tracked.eyes : own;
       return place === null ? null : composed(place, this.#offsets[part]);
     };
     return {

@@ -8,7 +8,7 @@ import { PerspectiveCamera, WebGLRenderer } from "three";
 import { type BodiesInWorker, type BodiesSetup, openBodiesInWorker } from "../bodies";
 import { layoutsOf } from "../tasks";
 import type { TelemetryClient } from "../telemetry";
-import { WebXrTracking } from "../tracking";
+import { type TrackedFrame, type TrackingSource, WebXrTracking } from "../tracking";
 import { paletteOf, STANDARD, World } from "../world";
 import { loadModel, requestAvatars } from "./avatars";
 import { Headset } from "./headset";
@@ -47,6 +47,7 @@ export class Vr {
   readonly #tracking: WebXrTracking;
   readonly #calibrator = new UsualOffsets();
   #bodies: BodiesInWorker | null = null;
+  #screen: OnScreen | null = null;
   #session: XRSession | null = null;
   #granted: Granted | null = null;
   #frames = 0;
@@ -115,18 +116,56 @@ export class Vr {
     if (space !== null) this.#tracking.begin(session, space);
   }
 
+  /** Show the study on this screen instead of in VR, moved by a source of its own. */
+  showOnScreen(host: HTMLElement, source: TrackingSource): void {
+    this.#world.sounds.resume();
+    const screen = { host, source: new Watched(source) };
+    this.#screen = screen;
+    this.#headset.trackBy(screen.source);
+    host.append(this.#renderer.domElement);
+    this.#renderer.xr.enabled = false;
+    this.#renderer.setAnimationLoop((timeMs) => this.#frameOnScreen(timeMs, screen));
+  }
+
   /** End VR, if it is shown, and free what it used. */
   dispose(): void {
     void this.#session?.end().catch(() => undefined);
     this.#headset.dispose();
     this.#world.dispose();
+    this.#renderer.setAnimationLoop(null);
+    this.#renderer.domElement.remove();
     this.#renderer.dispose();
+    this.#screen?.source.dispose();
     globalThis.reembody = undefined;
   }
 
   #frame(timeMs: number, frame: XRFrame): void {
     this.#headset.frame(timeMs / 1000, frame);
     this.#frames++;
+    if (this.#isRendering) this.#renderer.render(this.#world.scene, this.#camera);
+  }
+
+  #frameOnScreen(timeMs: number, { host, source }: OnScreen): void {
+    const { clientWidth: width, clientHeight: height } = host;
+    const canvas = this.#renderer.domElement;
+    const ratio = window.devicePixelRatio;
+    if (
+      canvas.width !== Math.floor(width * ratio) ||
+      canvas.height !== Math.floor(height * ratio)
+    ) {
+      this.#renderer.setPixelRatio(ratio);
+      this.#renderer.setSize(width, height);
+      this.#camera.aspect = width / Math.max(1, height);
+      this.#camera.updateProjectionMatrix();
+    }
+    this.#headset.frame(timeMs / 1000, null);
+    this.#frames++;
+    const eyes = source.last?.eyes ?? null;
+    if (eyes !== null) {
+      const [w, x, y, z] = eyes.rotation;
+      this.#camera.position.set(...eyes.positionM);
+      this.#camera.quaternion.set(x, y, z, w);
+    }
     if (this.#isRendering) this.#renderer.render(this.#world.scene, this.#camera);
   }
 
@@ -208,6 +247,43 @@ export class Vr {
         return { calls, triangles };
       },
     };
+  }
+}
+
+/** The study on a screen: where it is drawn, and what moves the participant. */
+interface OnScreen {
+  readonly host: HTMLElement;
+  readonly source: Watched;
+}
+
+/** A source whose newest frame the camera also follows. */
+class Watched implements TrackingSource {
+  last: TrackedFrame | null = null;
+  readonly #of: TrackingSource;
+
+  constructor(of: TrackingSource) {
+    this.#of = of;
+  }
+
+  get kind() {
+    return this.#of.kind;
+  }
+
+  get measures() {
+    return this.#of.measures;
+  }
+
+  get knownBody() {
+    return this.#of.knownBody;
+  }
+
+  read(timeS: number, frame: XRFrame | null): TrackedFrame {
+    this.last = this.#of.read(timeS, frame);
+    return this.last;
+  }
+
+  dispose(): void {
+    this.#of.dispose();
   }
 }
 

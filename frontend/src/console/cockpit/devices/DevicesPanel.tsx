@@ -29,7 +29,14 @@ export function DevicesPanel({ session }: { readonly session: SessionView }): JS
       {KINDS.map((kind) => {
         const paired = session.devices.filter((device) => device.kind === kind);
         if (paired.length === 0) {
-          return <Unpaired key={kind} kind={kind} onPair={() => setPairing(kind)} />;
+          return (
+            <Unpaired
+              key={kind}
+              sessionId={session.id}
+              kind={kind}
+              onPair={() => setPairing(kind)}
+            />
+          );
         }
         return paired.map((device) => (
           <Paired
@@ -45,7 +52,13 @@ export function DevicesPanel({ session }: { readonly session: SessionView }): JS
   );
 }
 
-function Unpaired({ kind, onPair }: { readonly kind: Device; readonly onPair: () => void }) {
+interface UnpairedProps {
+  readonly sessionId: string;
+  readonly kind: Device;
+  readonly onPair: () => void;
+}
+
+function Unpaired({ sessionId, kind, onPair }: UnpairedProps) {
   const { t } = useTexts();
   return (
     <div className={classes.device}>
@@ -55,6 +68,7 @@ function Unpaired({ kind, onPair }: { readonly kind: Device; readonly onPair: ()
           {t(`device.${kind}`)} <Key name={PAIR_KEYS[kind]} />
         </div>
         <div className={classes.deviceState}>{t("device.unpaired")}</div>
+        {kind === "headset" && <OpenDesktop sessionId={sessionId} />}
       </div>
       <Button
         size="xs"
@@ -66,6 +80,34 @@ function Unpaired({ kind, onPair }: { readonly kind: Device; readonly onPair: ()
         {t("device.pair")}
       </Button>
     </div>
+  );
+}
+
+/** Pairs this browser as the headset, and opens the study on this screen in a tab of its own. */
+function OpenDesktop({ sessionId }: { readonly sessionId: string }) {
+  const { t } = useTexts();
+  const pair = useMutation({
+    // Opened in the click itself, since browsers block tabs that open later.
+    mutationFn: async (tab: Window | null) => {
+      try {
+        const { code } = await sessions.pair(sessionId, "headset");
+        if (tab !== null) tab.location.href = `/vr?screen=desktop&code=${code}`;
+      } catch (error) {
+        tab?.close();
+        throw error;
+      }
+    },
+  });
+  return (
+    <Button
+      size="compact-xs"
+      variant="subtle"
+      loading={pair.isPending}
+      title={t("device.desktop.title")}
+      onClick={() => pair.mutate(window.open("about:blank", "_blank"))}
+    >
+      {t("device.desktop")}
+    </Button>
   );
 }
 

@@ -1,0 +1,87 @@
+/** The study on a screen instead of in a headset, with the keys that move the participant. */
+import { Loader } from "@mantine/core";
+import { type JSX, useEffect, useRef, useState } from "react";
+import { useTexts } from "../i18n";
+import { DESKTOP_KEYS } from "../tracking";
+import classes from "./Desktop.module.css";
+
+/** Whether the page was opened for a screen: `/vr?screen=desktop`. */
+export const isDesktopAddress = (): boolean =>
+  new URLSearchParams(window.location.search).get("screen") === "desktop";
+
+interface DesktopProps {
+  readonly visit: {
+    readonly isReady: boolean;
+    readonly problem: string | null;
+    readonly showOnScreen: (host: HTMLElement) => () => void;
+  };
+}
+
+export function Desktop({ visit }: DesktopProps): JSX.Element {
+  const { t } = useTexts();
+  const host = useRef<HTMLDivElement>(null);
+  const { isReady, problem, showOnScreen } = visit;
+  useEffect(() => {
+    if (isReady && host.current !== null) return showOnScreen(host.current);
+  }, [isReady, showOnScreen]);
+  return (
+    <div className={classes.page}>
+      <div ref={host} className={classes.host} data-testid="desktop" />
+      {!isReady && (
+        <output className={classes.waiting}>
+          <Loader size="sm" /> {t("desktop.starting")}
+        </output>
+      )}
+      {problem !== null && (
+        <p className={classes.waiting} role="alert">
+          {problem}
+        </p>
+      )}
+      <Help />
+    </div>
+  );
+}
+
+function Help(): JSX.Element {
+  const { t } = useTexts();
+  const [isShown, setShown] = useState(true);
+  useEffect(() => {
+    const onKey = (event: KeyboardEvent) => {
+      if (DESKTOP_KEYS[event.code] === "help" && !event.repeat) setShown((shown) => !shown);
+    };
+    window.addEventListener("keydown", onKey);
+    return () => window.removeEventListener("keydown", onKey);
+  }, []);
+  const rows = [
+    [t("desktop.mouse"), t("desktop.look")],
+    [t("desktop.rightButton"), t("desktop.reach")],
+    [t("desktop.wheel"), t("desktop.depth")],
+    [t("desktop.leftButton"), t("desktop.select")],
+    ["W A S D", t("desktop.walk")],
+    ["Q E", t("desktop.feet")],
+    [t("desktop.space"), t("desktop.grips")],
+    ["X", t("desktop.hand")],
+    ["C", t("desktop.squat")],
+    ["T", t("desktop.tPose")],
+    ["H", t("desktop.help")],
+  ];
+  return (
+    <aside className={classes.help} aria-label={t("desktop.title")}>
+      {isShown ? (
+        <>
+          <p>{t("desktop.begin")}</p>
+          <dl>
+            {rows.map(([key, what]) => (
+              <div key={key}>
+                <dt>{key}</dt>
+                <dd>{what}</dd>
+              </div>
+            ))}
+          </dl>
+        </>
+      ) : (
+        <kbd>H</kbd>
+      )}
+    </aside>
+  );
+}
