@@ -22,7 +22,8 @@ export function Desktop({ visit }: DesktopProps): JSX.Element {
   const host = useRef<HTMLDivElement>(null);
   const { isReady, problem, showOnScreen } = visit;
   useEffect(() => {
-    if (isReady && host.current !== null) return showOnScreen(host.current);
+    if (!isReady || host.current === null) return undefined;
+    return showOnScreen(host.current);
   }, [isReady, showOnScreen]);
   return (
     <div className={classes.page}>
