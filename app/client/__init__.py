@@ -9,6 +9,7 @@ from app.client.http import (
     UnreachableError,
     call,
     call_with_retry,
+    submit_form,
 )
 from app.client.journal import Journal
 from app.client.telemetry import TelemetryClient, TelemetryError
@@ -25,4 +26,5 @@ __all__ = [
     "UnreachableError",
     "call",
     "call_with_retry",
+    "submit_form",
 ]

@@ -154,13 +154,21 @@ class Tablet:
 
     async def submit(self, administration: Json, answers: Json, idempotency_key: str) -> Json:
         """Send a filled-in form."""
-        body = {
-            "idempotency_key": idempotency_key,
-            "administration": administration["key"],
-            "answers": answers,
-            "shown_order": administration["item_order"],
-            "seed": administration["seed"],
-            "language": administration["language"],
-        }
-        receipt: Json = await call_with_retry(self.client, "POST", "/api/tablet/submissions", body)
-        return receipt
+        path = "/api/tablet/submissions"
+        return await submit_form(self.client, path, administration, answers, idempotency_key)
+
+
+async def submit_form(
+    client: AsyncClient, path: str, administration: Json, answers: Json, idempotency_key: str
+) -> Json:
+    """Send a filled-in form to the address of a tablet, a headset or an operator."""
+    body = {
+        "idempotency_key": idempotency_key,
+        "administration": administration["key"],
+        "answers": answers,
+        "shown_order": administration["item_order"],
+        "seed": administration["seed"],
+        "language": administration["language"],
+    }
+    receipt: Json = await call_with_retry(client, "POST", path, body)
+    return receipt

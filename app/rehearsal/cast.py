@@ -1,13 +1,15 @@
 """Play a session: an operator who issues commands, a tablet that answers, and a headset."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
+from httpx2 import AsyncClient
 
-from app.client import Operator, ServerRefusedError, Tablet
+from app.client import Operator, ServerRefusedError, Tablet, call_with_retry, submit_form
 from app.protocol import STEP_KINDS, TIMED_KINDS
 from app.rehearsal.answers import agreement, fill_in
 from app.rehearsal.body import Person
@@ -45,7 +47,8 @@ class MissedInterruptionError(RuntimeError):
 class Cast:
     """The three devices and their shared state.
 
-    `interruptions`: the pending ones, the next first.
+    `in_headset`: a client with the headset's token. `interruptions`: the pending ones, the next
+    first.
     """
 
     operator: Operator
@@ -53,6 +56,7 @@ class Cast:
     headset: Headset
     person: Person
     rng: np.random.Generator
+    in_headset: AsyncClient
     say: Callable[[str], None] = lambda _: None
     submitted: set[str] = field(default_factory=set)
     interruptions: list[Interruption] = field(default_factory=list)
@@ -172,16 +176,38 @@ async def _answer_while_it_lasts(cast: Cast) -> None:
             case "instructions":
                 await cast.tablet.acknowledge(state["step_index"])
             case "form":
-                await _fill_in(cast, state["administration"])
+                await _fill_in(cast, state["administration"], cast.tablet.submit)
+            case "in_headset" | "oral":
+                await _fill_in_elsewhere(cast, state["screen"])
+                await asyncio.sleep(LOOK_EVERY_S)
             case _:
                 await asyncio.sleep(LOOK_EVERY_S)
 
 
-async def _fill_in(cast: Cast, administration: Json) -> None:
+async def _fill_in_elsewhere(cast: Cast, screen: str) -> None:
+    """Answer inside the headset, or aloud: then the operator enters the answers."""
+    own = f"/api/sessions/{cast.operator.session_id}"
+    client, path, form = {
+        "in_headset": (cast.in_headset, "/api/vr/submissions", "/api/vr/form"),
+        "oral": (cast.operator.client, f"{own}/submissions", f"{own}/administration"),
+    }[screen]
+    try:
+        administration = await call_with_retry(client, "GET", form)
+    except ServerRefusedError as error:
+        if error.code != "not_now":
+            raise
+        return
+    if administration is not None:
+        await _fill_in(cast, administration, partial(submit_form, client, path))
+
+
+async def _fill_in(
+    cast: Cast, administration: Json, submit: Callable[[Json, Json, str], Awaitable[Json]]
+) -> None:
     view = await cast.operator.view()
     step = view["steps"][administration["step_index"]]
     answers = fill_in(
         administration["instrument"], cast.person, step["latency_ms"], step["limb"], cast.rng
     )
-    await cast.tablet.submit(administration, answers, f"rehearsal-{administration['key']}"[:64])
+    await submit(administration, answers, f"rehearsal-{administration['key']}"[:64])
     cast.submitted.add(administration["key"])

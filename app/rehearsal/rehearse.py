@@ -199,7 +199,14 @@ async def assembled(
         headset = Headset(socket, person, tasks_of(socket), clock, physics)
         tablet = Tablet(tablet_http)
         yield Cast(
-            operator, tablet, headset, person, rng, say, interruptions=list(plan.interruptions)
+            operator,
+            tablet,
+            headset,
+            person,
+            rng,
+            headset_http,
+            say,
+            interruptions=list(plan.interruptions),
         )
 
 
