@@ -1,9 +1,9 @@
 /** What the participant sees in each place of the visit: the world, told what is to be seen. */
-import type { TimedRun } from "../tasks";
+import type { Limb, TimedRun } from "../tasks";
 import { BoxRun, currentGoal, displayedNumbers, surfaceColours } from "../tasks";
 import type { HeadsetState } from "../telemetry";
 import type { TrackedFrame } from "../tracking/tracked";
-import type { Device, Limb, TaskShown, Visible, World } from "../world";
+import type { Device, TaskShown, Visible, World } from "../world";
 import type { Place, Scenery, View } from "./ports";
 
 const NO_SETUPS: readonly Limb[] = [];

@@ -18,7 +18,7 @@ import {
   Vector3,
 } from "three";
 import type { Mirror } from "./mirror";
-import { NO_SIGN, SIGNS_ACROSS } from "./signs";
+import { NO_SIGN, NUMBERS, SIGNS_ACROSS } from "./signs";
 
 /** Where a block is: metres and radians. */
 export interface BlockPlace {
@@ -38,11 +38,13 @@ export class Blocks {
   readonly #inks: InstancedBufferAttribute;
   readonly #mirror: Mirror | null;
   readonly #colour = new Color();
+  readonly #painted: { colour: string; sign: number }[];
 
   /** `count` blocks, invisible until they are placed; without a mirror, no reflections. */
   constructor(count: number, signs: Texture, mirror: Mirror | null) {
     this.#count = count;
     this.#mirror = mirror;
+    this.#painted = Array.from({ length: count }, () => ({ colour: "", sign: NO_SIGN }));
     const all = mirror === null ? count : 2 * count;
     const geometry = new BoxGeometry(1, 1, 1);
     this.#signs = new InstancedBufferAttribute(new Float32Array(all).fill(NO_SIGN), 1);
@@ -83,9 +85,11 @@ export class Blocks {
   /** Give a block a colour and a sign; nothing is sent to the graphics card if both are as before. */
   paint(block: number, colour: string, sign: number): void {
     const { mesh } = this;
-    mesh.getColorAt(block, SEEN);
+    const painted = this.#painted[block];
+    if (painted === undefined || (painted.colour === colour && painted.sign === sign)) return;
+    painted.colour = colour;
+    painted.sign = sign;
     this.#colour.set(colour);
-    if (this.#signs.getX(block) === sign && SEEN.equals(this.#colour)) return;
     const ink = luminance(this.#colour) > 0.3 ? DARK_INK : LIGHT_INK;
     for (const at of this.#mirror === null ? [block] : [block, this.#count + block]) {
       mesh.setColorAt(at, this.#colour);
@@ -108,7 +112,6 @@ const MATRIX = new Matrix4();
 const POINT = new Vector3();
 const SIZE = new Vector3();
 const TURN = new Quaternion();
-const SEEN = new Color();
 const X = new Vector3(1, 0, 0);
 
 /** Relative luminance of a colour in linear light (ITU-R BT.709). */
@@ -169,10 +172,17 @@ float shorter = min(vHalf.x, vHalf.y);
 vec2 toEdge = vHalf - abs(vFace);
 float edge = min(toEdge.x, toEdge.y);
 float line = clamp((${EDGE_M} - edge) / max(fwidth(edge), 1e-5) + 0.5, 0.0, 1.0);
-vec2 onSign = clamp(vFace * vMirrored / (${SIGN_SHARE} * shorter), -1.0, 1.0) * 0.5 + 0.5;
 float cell = max(vSign, 0.0);
+// A shape is repeated along a long face; a number is not.
+vec2 times = vec2(1.0);
+if (cell > ${NUMBERS}.0 - 0.5) times = max(vec2(1.0), floor(vHalf / shorter / 1.6 + 0.2));
+vec2 apart = 2.0 * vHalf / times;
+vec2 fromMiddle = mod(vFace + vHalf, apart) - 0.5 * apart;
+vec2 onSign = clamp(fromMiddle * vMirrored / (${SIGN_SHARE} * shorter), -1.0, 1.0) * 0.5 + 0.5;
 vec2 corner = vec2(mod(cell, ${SIGNS_ACROSS}.0), ${SIGNS_ACROSS}.0 - 1.0 - floor(cell / ${SIGNS_ACROSS}.0));
-float covered = texture2D(signs, (corner + onSign) / ${SIGNS_ACROSS}.0).a;
+// Where one repetition ends and the next begins, the texture's coordinates jump.
+vec2 unbroken = vFace / (${2 * SIGN_SHARE * SIGNS_ACROSS} * shorter);
+float covered = textureGrad(signs, (corner + onSign) / ${SIGNS_ACROSS}.0, dFdx(unbroken), dFdy(unbroken)).a;
 if (vSign < -0.5 || shorter < ${SMALLEST_FACE_M / 2}) covered = 0.0;
 diffuseColor.rgb = mix(diffuseColor.rgb, vInk, covered);
 diffuseColor.rgb = mix(diffuseColor.rgb, diffuseColor.rgb * 0.42, line);`;

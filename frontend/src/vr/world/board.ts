@@ -41,6 +41,9 @@ const LABEL = { width: 768, height: 96 } as const;
 const GLYPH_M = { width: 0.075, height: 0.12 } as const;
 const LABEL_M = { width: 0.48, height: 0.06 } as const;
 const GAP_M = 0.055;
+/** A quad that shows none of the texture. */
+const NOTHING = { width: 0, height: 0 } as const;
+const LABELS = 2;
 const TIME_GLYPHS = 5;
 const COUNT_GLYPHS = 3;
 
@@ -51,7 +54,7 @@ export class Board {
 
   constructor(mirror: Mirror, words: BoardWords) {
     const geometry = new BufferGeometry();
-    const quads = 2 + TIME_GLYPHS + COUNT_GLYPHS;
+    const quads = LABELS + TIME_GLYPHS + COUNT_GLYPHS;
     this.#uvs = new Float32BufferAttribute(new Float32Array(8 * quads), 2);
     this.#uvs.setUsage(DynamicDrawUsage);
     geometry.setAttribute("position", new Float32BufferAttribute(this.#corners(mirror), 3));
@@ -66,8 +69,6 @@ export class Board {
     this.mesh = new Mesh(geometry, material);
     this.mesh.matrixAutoUpdate = false;
     this.mesh.visible = false;
-    this.#point(0, 0, GLYPH.height, LABEL.width, LABEL.height);
-    this.#point(1, 0, GLYPH.height + LABEL.height, LABEL.width, LABEL.height);
   }
 
   /** Seconds are counted down as people do: 0:01 lasts until there is no time left. */
@@ -83,10 +84,14 @@ export class Board {
     const text = time.padEnd(TIME_GLYPHS) + count.padEnd(COUNT_GLYPHS);
     if (text === this.#shown) return;
     this.#shown = text;
+    [time, count].forEach((value, label) => {
+      const { width, height } = value === "" ? NOTHING : LABEL;
+      this.#point(label, 0, GLYPH.height + label * LABEL.height, width, height);
+    });
     for (let at = 0; at < text.length; at++) {
       const glyph = GLYPHS.indexOf(text[at] ?? " ");
-      if (glyph < 0) this.#point(2 + at, 0, 0, 0, 0);
-      else this.#point(2 + at, glyph * GLYPH.width, 0, GLYPH.width, GLYPH.height);
+      const { width, height } = glyph < 0 ? NOTHING : GLYPH;
+      this.#point(LABELS + at, Math.max(0, glyph) * GLYPH.width, 0, width, height);
     }
     this.#uvs.needsUpdate = true;
   }

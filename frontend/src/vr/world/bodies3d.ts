@@ -41,7 +41,11 @@ export interface Body3d {
   dispose(): void;
 }
 
-const TRANSPARENT = { color: "#7f9cab", transparent: true, opacity: 0.4 } as const;
+/** Farther away by a trace, so that a body at the same place hides it. */
+const TRANSPARENT = {
+  ...{ color: "#7f9cab", transparent: true, opacity: 0.4 },
+  ...{ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 },
+} as const;
 
 /**
  * A model that is worn. Two draws a mesh on one skeleton: what the eyes see, and its reflection,

@@ -4,6 +4,6 @@ export type { BoundaryProblem, FloorPoint } from "./boundary";
 export { PANELS_ORDER } from "./curtain";
 export type { Device, DeviceKind } from "./devices";
 export { BodyEyes } from "./eyes";
-export type { Limb, Setup, TaskShown } from "./setups";
+export type { Setup, TaskShown } from "./setups";
 export { type Sound, Sounds } from "./sounds";
 export { type BodyValues, type Visible, World, type WorldFrame, type WorldOptions } from "./world";

@@ -7,10 +7,10 @@ import { DirectionalLight, Group, HemisphereLight } from "three";
  */
 export function makeLights(): Group {
   const lights = new Group();
-  lights.add(new HemisphereLight("#ffffff", "#b9b2a8", 1.55));
+  lights.add(new HemisphereLight("#ffffff", "#e2ded7", 2.35));
   for (const z of [1, -1]) {
-    const light = new DirectionalLight("#fff6ea", 0.95);
-    light.position.set(-0.45, 1.1, z);
+    const light = new DirectionalLight("#fff8ee", 0.52);
+    light.position.set(-0.3, 0.9, 0.75 * z);
     lights.add(light);
   }
   return lights;

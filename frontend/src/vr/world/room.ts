@@ -23,16 +23,19 @@ const HALF_WIDTH_M = 2.9;
 const BACK_Z_M = 3.1;
 const HEIGHT_M = 2.9;
 /** Of the mirror's frame. */
-const FRAME_M = 0.035;
+const FRAME_M = 0.04;
 /** Side of a floor tile. */
 const TILE_M = 0.5;
 
-const FLOOR = new Color("#b9b4aa");
-const WALL = new Color("#dcdad4");
-const MIRROR_WALL = new Color("#d2d3cf");
-const CEILING = new Color("#ecebe7");
-const SKIRTING = new Color("#c3c0b9");
-const FRAME = new Color("#5c5a55");
+const FLOOR = new Color("#aaa497");
+const SIDE_WALL = new Color("#d9d6ce");
+const BACK_WALL = new Color("#d3d0c8");
+const MIRROR_WALL = new Color("#dfddd6");
+const CEILING = new Color("#e9e7e1");
+const LAMP = new Color("#ffffff");
+const SKIRTING = new Color("#c2beb4");
+const FRAME = new Color("#4e4b46");
+const SKIRTING_M = 0.08;
 
 type Point = readonly [x: number, y: number, z: number];
 
@@ -41,139 +44,134 @@ export function makeRoom(
   mirror: Mirror,
   hasDouble: boolean,
 ): Mesh<BufferGeometry, MeshBasicMaterial> {
-  const quads = new Quads();
-  drawRoom(quads, mirror.planeZM);
-  if (hasDouble) quads.reflect(mirror.planeZM);
-  drawMirrorWall(quads, mirror);
+  const painted = new Painted();
+  paintRoom(painted, mirror.planeZM);
+  paintFrame(painted, mirror);
+  if (hasDouble) painted.reflect(mirror.planeZM);
+  paintMirrorWall(painted, mirror);
   const material = new MeshBasicMaterial({ vertexColors: true, map: tileTexture() });
-  const mesh = new Mesh(quads.geometry(), material);
+  const mesh = new Mesh(painted.geometry(), material);
   mesh.matrixAutoUpdate = false;
   return mesh;
 }
 
-function drawRoom(quads: Quads, front: number): void {
+function paintRoom(painted: Painted, front: number): void {
   const [w, back, top] = [HALF_WIDTH_M, BACK_Z_M, HEIGHT_M];
-  quads.floor([-w, 0, back], [w, 0, front], FLOOR);
-  const corner = 0.82;
-  // Anticlockwise as seen from inside, from the lower left corner.
-  const walls: readonly (readonly [Point, Point])[] = [
-    [
-      [-w, 0, back],
-      [-w, 0, front],
-    ],
-    [
-      [w, 0, front],
-      [w, 0, back],
-    ],
-    [
-      [w, 0, back],
-      [-w, 0, back],
-    ],
+  const depth = back - front;
+  painted.panel([-w, 0, back], [2 * w, 0, 0], [0, 0, -depth], FLOOR, FLOOR_EDGES, true);
+  painted.panel([-w, top, front], [2 * w, 0, 0], [0, 0, depth], CEILING, CEILING_EDGES);
+  painted.panel([-0.8, top - 0.004, -0.6], [1.6, 0, 0], [0, 0, 1.2], LAMP, {});
+  const walls: readonly (readonly [Point, Point, Color])[] = [
+    [[-w, 0, back], [0, 0, -depth], SIDE_WALL],
+    [[w, 0, front], [0, 0, depth], SIDE_WALL],
+    [[w, 0, back], [-2 * w, 0, 0], BACK_WALL],
   ];
-  for (const [left, right] of walls) {
-    quads.wall(left, right, 0.09, top, WALL, corner);
-    quads.wall(left, right, 0, 0.09, SKIRTING, 1);
+  for (const [corner, across, colour] of walls) {
+    painted.panel(corner, across, [0, top, 0], colour, WALL_EDGES);
+    skirting(painted, corner, across);
   }
-  quads.quad(
-    [
-      [-w, top, front],
-      [w, top, front],
-      [w, top, back],
-      [-w, top, back],
-    ],
-    CEILING,
-  );
 }
 
-/** The wall around the hole, which shows what is behind it, and a thin frame. */
-function drawMirrorWall(quads: Quads, { planeZM: z, widthM, heightM }: Mirror): void {
+/** The wall around the hole, which shows what is behind it. */
+function paintMirrorWall(painted: Painted, { planeZM: z, widthM, heightM }: Mirror): void {
   const half = widthM / 2;
-  const w = HALF_WIDTH_M;
-  quads.wall([-w, 0, z], [-half, 0, z], 0, HEIGHT_M, MIRROR_WALL, 0.93);
-  quads.wall([half, 0, z], [w, 0, z], 0, HEIGHT_M, MIRROR_WALL, 0.93);
-  quads.wall([-half, 0, z], [half, 0, z], heightM, HEIGHT_M, MIRROR_WALL, 1);
-  const near = z + 0.012;
-  const outer = half + FRAME_M;
-  const bars: readonly (readonly [number, number, number, number])[] = [
-    [-outer, -half, 0, heightM + FRAME_M],
-    [half, outer, 0, heightM + FRAME_M],
-    [-half, half, heightM, heightM + FRAME_M],
-  ];
-  for (const [x0, x1, y0, y1] of bars) {
-    quads.quad(
-      [
-        [x0, y0, near],
-        [x1, y0, near],
-        [x1, y1, near],
-        [x0, y1, near],
-      ],
-      FRAME,
-    );
-  }
+  const aside = HALF_WIDTH_M - half;
+  const { low, high, left } = WALL_EDGES;
+  const up: Point = [0, HEIGHT_M, 0];
+  painted.panel([-HALF_WIDTH_M, 0, z], [aside, 0, 0], up, MIRROR_WALL, { low, high, left });
+  painted.panel([half, 0, z], [aside, 0, 0], up, MIRROR_WALL, { low, high, right: left });
+  painted.panel([-half, heightM, z], [widthM, 0, 0], [0, HEIGHT_M - heightM, 0], MIRROR_WALL, {
+    high,
+  });
+  skirting(painted, [-HALF_WIDTH_M, 0, z], [aside - FRAME_M, 0, 0]);
+  skirting(painted, [half + FRAME_M, 0, z], [aside - FRAME_M, 0, 0]);
 }
 
-/** Coloured quads; each is anticlockwise as seen from its front. */
-class Quads {
+/** A thin frame, which stands a little in front of the glass and so has a reflection, too. */
+function paintFrame(painted: Painted, { planeZM: z, widthM, heightM }: Mirror): void {
+  const half = widthM / 2;
+  const outer = half + FRAME_M;
+  painted.bar([-outer, 0, z], [-half, heightM, z + FRAME_DEPTH_M], FRAME);
+  painted.bar([half, 0, z], [outer, heightM, z + FRAME_DEPTH_M], FRAME);
+  painted.bar([-outer, heightM, z], [outer, heightM + FRAME_M, z + FRAME_DEPTH_M], FRAME);
+}
+const FRAME_DEPTH_M = 0.02;
+
+/** A board along the lower edge of a wall, drawn just in front of it. */
+function skirting(painted: Painted, [x, , z]: Point, across: Point): void {
+  const length = Math.hypot(...across);
+  // Up x across points out of the wall.
+  const [nx, nz] = [-across[2] / length, across[0] / length];
+  const corner: Point = [x + 0.006 * nx, 0, z + 0.006 * nz];
+  painted.panel(corner, across, [0, SKIRTING_M, 0], SKIRTING, {});
+}
+
+/** How much darker a surface is at its edges, as a share. */
+interface Edges {
+  readonly left?: number;
+  readonly right?: number;
+  readonly low?: number;
+  readonly high?: number;
+}
+const WALL_EDGES = { left: 0.1, right: 0.1, low: 0.12, high: 0.07 } as const;
+const CEILING_EDGES: Edges = { left: 0.08, right: 0.08, high: 0.08, low: 0.04 };
+/** Not towards the mirror, below whose glass the floor goes on. */
+const FLOOR_EDGES: Edges = { left: 0.16, right: 0.16, low: 0.16 };
+
+/** Coloured quads, seen from where their corners run anticlockwise. */
+class Painted {
   readonly #positions: number[] = [];
   readonly #colours: number[] = [];
   readonly #uvs: number[] = [];
   readonly #indices: number[] = [];
 
-  /** The whole quad has one colour, or each corner its share of it. */
-  quad(corners: readonly [Point, Point, Point, Point], colour: Color, shares?: readonly number[]) {
+  /** A surface from a corner, across to the right and up, as seen from its front. */
+  panel(
+    corner: Point,
+    across: Point,
+    up: Point,
+    colour: Color,
+    edges: Edges,
+    isTiled = false,
+  ): void {
     const first = this.#positions.length / 3;
-    corners.forEach((corner, at) => {
-      const share = shares?.[at] ?? 1;
-      this.#positions.push(...corner);
-      this.#colours.push(colour.r * share, colour.g * share, colour.b * share);
-      // The middle of a tile, which is plain.
-      this.#uvs.push(0.5, 0.5);
-    });
-    this.#indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
-  }
-
-  /** A wall from its lower left to its lower right corner; darker at its lower edge. */
-  wall(left: Point, right: Point, low: number, high: number, colour: Color, below: number): void {
-    const at = ([x, , z]: Point, y: number): Point => [x, y, z];
-    const rows = [low, low + 0.25 * (high - low), high];
-    const shares = [below, (1 + below) / 2 + 0.02, 1];
-    for (let row = 0; row + 1 < rows.length; row++) {
-      const [y0 = 0, y1 = 0] = rows.slice(row, row + 2);
-      const [s0 = 1, s1 = 1] = shares.slice(row, row + 2);
-      quadOf(this, at(left, y0), at(right, y0), at(right, y1), at(left, y1), colour, [
-        s0,
-        s0,
-        s1,
-        s1,
-      ]);
-    }
-  }
-
-  /** A tiled floor, darker towards the walls. */
-  floor([x0, y, back]: Point, [x1, , front]: Point, colour: Color): void {
-    const xs = ease(x0, x1);
-    const zs = ease(front, back);
-    const share = (x: number, z: number) =>
-      0.86 + 0.14 * rise(Math.min(x - x0, x1 - x)) * rise(Math.min(z - front, back - z) + 0.3);
-    for (let i = 0; i + 1 < xs.length; i++) {
-      for (let j = 0; j + 1 < zs.length; j++) {
-        const [a = 0, b = 0] = xs.slice(i, i + 2);
-        const [c = 0, d = 0] = zs.slice(j, j + 2);
-        const corners = [
-          [a, y, d],
-          [b, y, d],
-          [b, y, c],
-          [a, y, c],
-        ] as const;
-        this.quad(
-          [...corners],
-          colour,
-          corners.map(([x, , z]) => share(x, z)),
-        );
-        const tiles = corners.flatMap(([x, , z]) => [x / TILE_M + 0.5, z / TILE_M + 0.5]);
-        this.#uvs.splice(-8, 8, ...tiles);
+    const isPlain = Object.keys(edges).length === 0;
+    const steps = isPlain ? [0, 1] : STEPS;
+    const [width, height] = [Math.hypot(...across), Math.hypot(...up)];
+    for (const v of steps) {
+      for (const u of steps) {
+        const [x, y, z] = [0, 1, 2].map(
+          (axis) => (corner[axis] ?? 0) + u * (across[axis] ?? 0) + v * (up[axis] ?? 0),
+        ) as [number, number, number];
+        const share =
+          darkened(edges.left, u * width) *
+          darkened(edges.right, (1 - u) * width) *
+          darkened(edges.low, v * height) *
+          darkened(edges.high, (1 - v) * height);
+        this.#positions.push(x, y, z);
+        this.#colours.push(colour.r * share, colour.g * share, colour.b * share);
+        // The middle of a tile is plain.
+        this.#uvs.push(isTiled ? x / TILE_M + 0.5 : 0.5, isTiled ? z / TILE_M + 0.5 : 0.5);
       }
     }
+    const row = steps.length;
+    for (let v = 0; v + 1 < row; v++) {
+      for (let u = 0; u + 1 < row; u++) {
+        const at = first + v * row + u;
+        this.#indices.push(at, at + 1, at + row + 1, at, at + row + 1, at + row);
+      }
+    }
+  }
+
+  /** A bar on the wall, from its lower left corner at the wall to the opposite one in the room. */
+  bar([x0, y0, z0]: Point, [x1, y1, z1]: Point, colour: Color): void {
+    const [w, h, d] = [x1 - x0, y1 - y0, z1 - z0];
+    this.panel([x0, y0, z1], [w, 0, 0], [0, h, 0], colour, {});
+    const side = colour.clone().multiplyScalar(0.7);
+    this.panel([x0, y0, z0], [0, 0, d], [0, h, 0], side, {});
+    this.panel([x1, y0, z1], [0, 0, -d], [0, h, 0], side, {});
+    this.panel([x0, y1, z1], [w, 0, 0], [0, 0, -d], side, {});
+    this.panel([x0, y0, z0], [w, 0, 0], [0, 0, d], side, {});
   }
 
   /** Everything once more, reflected; its corners in the reversed order. */
@@ -200,27 +198,15 @@ class Quads {
   }
 }
 
-function quadOf(
-  quads: Quads,
-  a: Point,
-  b: Point,
-  c: Point,
-  d: Point,
-  colour: Color,
-  shares: readonly number[],
-): void {
-  quads.quad([a, b, c, d], colour, shares);
+/** Close to each other near the edges, where a surface becomes darker. */
+const STEPS = [0, 0.03, 0.08, 0.15, 0.25, 0.5, 0.75, 0.85, 0.92, 0.97, 1] as const;
+
+/** The light at a distance from an edge, which is darker by a share. */
+function darkened(by: number | undefined, metres: number): number {
+  if (by === undefined) return 1;
+  const near = Math.max(0, 1 - metres / 0.8);
+  return 1 - by * near * near;
 }
-
-/** Steps from one wall to the other, close to each other near the walls. */
-const ease = (from: number, to: number): readonly number[] =>
-  [0, 0.06, 0.15, 0.3, 0.5, 0.7, 0.85, 0.94, 1].map((share) => from + share * (to - from));
-
-/** 0 at a wall, 1 from 0.9 m away on. */
-const rise = (metres: number): number => {
-  const share = Math.min(1, Math.max(0, metres / 0.9));
-  return share * share * (3 - 2 * share);
-};
 
 /** A tile with a fine joint: it shows where the floor is, and how the wearer moves over it. */
 function tileTexture(): CanvasTexture {

@@ -5,39 +5,29 @@
  * A box has its number twice: on its panel, and where it is read without looking into the box: on a
  * plate above the opening of a hand box, on the floor in front of a foot box.
  */
-import type { Vector } from "@shared/rotations";
+import type { Colour, Limb, Surface } from "../tasks";
 import type { Palette } from "./appearance";
 import { type BlockPlace, Blocks } from "./blocks";
 import type { Mirror } from "./mirror";
 import { makeSigns, NO_SIGN, signOfCue, signOfNumber } from "./signs";
 
-export type Limb = "hand" | "foot";
-
-/** What has to be known of a surface of a task's layout to draw it. */
-export interface SurfaceShape {
-  readonly key: string;
-  readonly kind: "panel" | "side" | "target" | "start";
-  readonly box: number | null;
-  readonly centerM: Vector;
-  readonly halfSizeM: Vector;
-}
-
+/** What has to be known of a task's layout to draw it. */
 export interface Setup {
-  readonly surfaces: readonly SurfaceShape[];
+  readonly surfaces: readonly Surface[];
 }
 
 /** What a task wants seen: `currentGoal`, `surfaceColours` and `displayedNumbers` of its state. */
 export interface TaskShown {
   readonly limb: Limb;
   readonly goal: string | null;
-  readonly colours: ReadonlyMap<string, "grey" | "green" | "white" | "red">;
+  readonly colours: ReadonlyMap<string, Colour>;
   readonly numbers: ReadonlyMap<number, number>;
 }
 
 /** One block in the scene: a surface, or the plate with a box's number. */
 interface Drawn {
   readonly limb: Limb;
-  readonly surface: SurfaceShape;
+  readonly surface: Surface;
   readonly place: BlockPlace;
   readonly isPlate: boolean;
 }
@@ -118,11 +108,7 @@ const PLATE_M = { hand: 0.055, foot: 0.1, thick: 0.004, apart: 0.012 } as const;
 const PLATE_TILT_RAD = -0.6;
 
 /** Where a box's number plate is; null for a box that has no room for one. */
-function plateOf(
-  limb: Limb,
-  panel: SurfaceShape,
-  surfaces: readonly SurfaceShape[],
-): BlockPlace | null {
+function plateOf(limb: Limb, panel: Surface, surfaces: readonly Surface[]): BlockPlace | null {
   const own = surfaces.filter(({ box }) => box === panel.box);
   const end = (axis: 0 | 1 | 2) =>
     Math.max(...own.map(({ centerM, halfSizeM }) => centerM[axis] + halfSizeM[axis]));

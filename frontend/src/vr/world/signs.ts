@@ -5,8 +5,8 @@ import type { Cue } from "./appearance";
 /** Signs in a row and in a column of the texture. */
 export const SIGNS_ACROSS = 4;
 const CELL = 256;
-/** A study has at most 12 boxes. */
-const NUMBERS = 12;
+/** A study has at most 12 boxes; shapes come behind their numbers. */
+export const NUMBERS = 12;
 const CUES: readonly Exclude<Cue, "none">[] = ["check", "cross", "ring", "stripes"];
 
 /** The index of a sign in the texture; -1: none. */

@@ -10,7 +10,8 @@
  */
 import type { Place } from "@shared/avatar/hips";
 import type { BodyModel } from "@shared/stage/skin/bodyModel";
-import { Color, Group, Scene } from "three";
+import { type Camera, Color, Group, Scene, type WebGLRenderer } from "three";
+import type { Limb } from "../tasks";
 import type { Palette } from "./appearance";
 import { Board, boardWords } from "./board";
 import { type Body3d, type Look, PlainBody, SkinnedBody } from "./bodies3d";
@@ -26,7 +27,7 @@ import { type Device, Devices } from "./devices";
 import { makeLights } from "./lights";
 import { type Mirror, mirrorBehind } from "./mirror";
 import { makeRoom } from "./room";
-import { type Limb, type Setup, Setups, type TaskShown } from "./setups";
+import { type Setup, Setups, type TaskShown } from "./setups";
 import { Shadows } from "./shadows";
 import { tPose } from "./skeleton";
 import { Sounds } from "./sounds";
@@ -101,7 +102,9 @@ export class World {
   readonly #line;
   readonly #room;
   readonly #models = new Map<string | null, BodyModel>();
-  readonly #bodies = new Map<Slot, Body3d>();
+  /** By name of the body: kept, so that putting one on again takes no time. */
+  readonly #wardrobe = new Map<string | null, Map<Slot, Body3d>>();
+  #isSeenFromWithin = true;
   #worn: string | null = null;
   #statureM = 1.7;
   #greenBefore = 0;
@@ -137,7 +140,7 @@ export class World {
   /** Keep a body's model under its name (null: the configuration's), to be worn later. */
   addBody(name: string | null, model: BodyModel): void {
     this.#models.set(name, model);
-    if (name === this.#worn) this.#clearBodies();
+    this.#clear(name);
   }
 
   /**
@@ -146,9 +149,37 @@ export class World {
    */
   wear(name: string | null, statureM: number): void {
     if (name === this.#worn && statureM === this.#statureM) return;
+    for (const body of this.#bodies.values()) body.group.visible = false;
+    if (statureM !== this.#statureM) for (const one of this.#wardrobe.keys()) this.#clear(one);
     this.#worn = name;
     this.#statureM = statureM;
-    this.#clearBodies();
+  }
+
+  /**
+   * Compile everything that may be shown, including all bodies added so far, so that nothing
+   * stutters when it appears for the first time.
+   */
+  async prepare(renderer: WebGLRenderer, camera: Camera): Promise<void> {
+    const worn = this.#worn;
+    for (const name of this.#models.keys()) {
+      this.#worn = name;
+      for (const slot of SLOTS) this.#body(slot);
+    }
+    this.#worn = worn;
+    await renderer.compileAsync(this.scene, camera);
+  }
+
+  /**
+   * Whether the room is seen through the body's own eyes, as usual, so that its head is seen in the
+   * mirror only; false for a camera that looks at the body.
+   */
+  set isSeenFromWithin(isSeenFromWithin: boolean) {
+    this.#isSeenFromWithin = isSeenFromWithin;
+    for (const bodies of this.#wardrobe.values()) {
+      for (const [slot, body] of bodies) {
+        if (slot !== "figure") body.setSeenFromWithin(isSeenFromWithin);
+      }
+    }
   }
 
   /** Check the guarded space, and show the line of what is needed if it does not suffice. */
@@ -176,7 +207,7 @@ export class World {
   }
 
   dispose(): void {
-    this.#clearBodies();
+    for (const name of this.#wardrobe.keys()) this.#clear(name);
     this.#setups.dispose();
     this.#board.dispose();
     this.#shadows.dispose();
@@ -239,18 +270,28 @@ export class World {
       model === undefined
         ? new PlainBody(this.#statureM, look, this.#reflecting)
         : new SkinnedBody(model, this.#statureM, look, this.#reflecting);
-    body.setSeenFromWithin(slot !== "figure");
+    body.setSeenFromWithin(slot !== "figure" && this.#isSeenFromWithin);
     this.#bodies.set(slot, body);
     this.scene.add(body.group);
     return body;
   }
 
-  #clearBodies(): void {
-    for (const body of this.#bodies.values()) {
+  /** The bodies that are made of the worn one. */
+  get #bodies(): Map<Slot, Body3d> {
+    let bodies = this.#wardrobe.get(this.#worn);
+    if (bodies === undefined) {
+      bodies = new Map();
+      this.#wardrobe.set(this.#worn, bodies);
+    }
+    return bodies;
+  }
+
+  #clear(name: string | null): void {
+    for (const body of this.#wardrobe.get(name)?.values() ?? []) {
       this.scene.remove(body.group);
       body.dispose();
     }
-    this.#bodies.clear();
+    this.#wardrobe.delete(name);
   }
 
   /** How far the eyes have come towards the glass, through which nobody may look at its back. */
@@ -275,6 +316,7 @@ export class World {
 
 /** `beside`: the local body while the remote one is there, too. */
 type Slot = "local" | "remote" | "beside" | "figure";
+const SLOTS: readonly Slot[] = ["local", "remote", "beside", "figure"];
 
 const NO_DEVICES: readonly Device[] = [];
 /** Nearer to the figure's middle than this, one stands in it, metres. */
