@@ -15,34 +15,31 @@ import type { Measure } from "./surface/wrap";
 
 /** Outside of this angle beside the middle of the view, a panel cannot be read. */
 const OUT_OF_SIGHT_RAD = (55 * Math.PI) / 180;
-const NEAR_M = 0.7;
+const NEAR_M = 0.5;
 const FAR_M = 2.6;
 const AWAY_S = 1.5;
+const LEAST_DISTANCE_M = 0.8;
+const WALL_GAP_M = 0.15;
 
 export class Panels {
   /** To be added to the scene once. */
   readonly object = new Group();
   readonly #surface: PanelSurface;
   readonly #pointer = new Pointer();
-  readonly #distanceM: number;
+  readonly #wallZM: number;
   #content: PanelContent | null = null;
   #isNew = false;
   #isPlaced = false;
+  #isLow = false;
   #shownKey = "";
   #awaySinceS: number | null = null;
   /** Called when something was pressed: for a sound, or a pulse of the controller. */
   onPressed: ((side: Side | null) => void) | null = null;
 
-  /** `distanceM`: from the eyes; the panel has to stand between the wearer and the mirror. */
-  constructor({
-    distanceM = PANEL_DISTANCE_M,
-    canvas,
-  }: {
-    readonly distanceM?: number;
-    readonly canvas?: HTMLCanvasElement;
-  } = {}) {
-    this.#distanceM = distanceM;
-    this.#surface = new PanelSurface(canvas);
+  /** `wallZM`: the plane of the wall with the mirror, behind which a panel must not stand. */
+  constructor({ wallZM = Number.NEGATIVE_INFINITY }: { readonly wallZM?: number } = {}) {
+    this.#wallZM = wallZM;
+    this.#surface = new PanelSurface();
     this.object.name = "panels";
     this.object.add(this.#surface.object, this.#surface.beam);
   }
@@ -98,6 +95,10 @@ export class Panels {
     this.#isNew = false;
     const screen = this.#content?.screen ?? null;
     this.#surface.show(screen);
+    if (screen !== null && (screen.isLow ?? false) !== this.#isLow) {
+      this.#isLow = screen.isLow ?? false;
+      this.#isPlaced = false;
+    }
     if (screen !== null && screen.key !== this.#shownKey) this.#pointer.screenChanged(nowS);
     this.#shownKey = screen?.key ?? "";
   }
@@ -106,7 +107,9 @@ export class Panels {
     if (eyes === null) return;
     const heading = headingOf(eyes);
     if (!this.#isPlaced) {
-      this.#surface.place(eyes.positionM, heading, this.#distanceM);
+      const distanceM = this.#distanceM(eyes.positionM, heading);
+      const { isLow } = this.#content?.screen ?? {};
+      this.#surface.place(eyes.positionM, heading, distanceM, isLow);
       this.#isPlaced = true;
       this.#awaySinceS = null;
       return;
@@ -118,6 +121,14 @@ export class Panels {
     if (!isAway) this.#awaySinceS = null;
     else if (this.#awaySinceS === null) this.#awaySinceS = timeS;
     else if (timeS - this.#awaySinceS > AWAY_S) this.#isPlaced = false;
+  }
+
+  /** As far as it should be, or as the wall allows. Sizes are angles: it looks the same. */
+  #distanceM([, , z]: Vector, heading: number): number {
+    const ahead = Math.cos(heading);
+    if (ahead < 0.2) return PANEL_DISTANCE_M;
+    const toWallM = (z - this.#wallZM) / ahead - WALL_GAP_M;
+    return Math.min(PANEL_DISTANCE_M, Math.max(LEAST_DISTANCE_M, toWallM));
   }
 
   #pointing(frame: TrackedFrame, side: Side): HandPointing {

@@ -77,6 +77,7 @@ export function calibrationScreen(words: PanelWords, prompt: CalibrationPrompt):
   const text = words("calibration.step", { number, total });
   return {
     key: `calibration ${step}`,
+    isLow: step !== "fit",
     lead: text,
     title: words(`calibration.${step}.title`),
     body: [{ kind: "prose", text: words(`calibration.${step}.body`) }],

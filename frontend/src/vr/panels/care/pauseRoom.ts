@@ -1,6 +1,8 @@
 /**
- * A calm, dim room for pauses: a soft floor, a horizon and nothing else. It hides the scene, and the
- * participant can look around in it as before, because head tracking never stops.
+ * A calm, dim room for pauses: a soft floor, a horizon and nothing else.
+ *
+ * It is drawn over the curtain that hides the scene, so that the participant keeps a floor and an
+ * upright while nothing else is there. The head stays tracked all the time.
  */
 import {
   BackSide,
@@ -12,39 +14,58 @@ import {
   MeshBasicMaterial,
   SphereGeometry,
 } from "three";
+import { PANELS_ORDER } from "../../world";
 
 const RADIUS_M = 8;
-const FLOOR = new Color("#26333a");
-const HORIZON = new Color("#38505a");
-const ZENITH = new Color("#161e24");
+const FADE_S = 0.4;
+const FLOOR = new Color("#303e44");
+const HORIZON = new Color("#46575e");
+const ZENITH = new Color("#242d32");
 
 export class PauseRoom {
   readonly object = new Group();
+  readonly #material = new MeshBasicMaterial({
+    vertexColors: true,
+    side: BackSide,
+    transparent: true,
+    depthTest: false,
+    depthWrite: false,
+    toneMapped: false,
+    fog: false,
+  });
+  #share = 0;
+  #timeS = Number.NaN;
 
   constructor() {
-    const dome = new Mesh(
-      shaded(new SphereGeometry(RADIUS_M, 32, 24), (y) =>
-        HORIZON.clone().lerp(ZENITH, Math.min(1, Math.max(0, y / (RADIUS_M * 0.8)))),
-      ),
-      new MeshBasicMaterial({ vertexColors: true, side: BackSide, toneMapped: false }),
+    const dome = shaded(new SphereGeometry(RADIUS_M, 32, 32), (y) =>
+      HORIZON.clone().lerp(ZENITH, Math.min(1, Math.abs(y) / (RADIUS_M * 0.7))),
     );
-    const floor = new CircleGeometry(RADIUS_M, 48).rotateX(-Math.PI / 2);
-    const ground = new Mesh(
-      shaded(floor, (_, distance) => FLOOR.clone().lerp(HORIZON, distance / RADIUS_M)),
-      new MeshBasicMaterial({ vertexColors: true, toneMapped: false }),
+    // Its face looks down: BackSide shows it from above.
+    const floor = shaded(new CircleGeometry(RADIUS_M, 48).rotateX(Math.PI / 2), (_, distance) =>
+      FLOOR.clone().lerp(HORIZON, Math.min(1, distance / RADIUS_M)),
     );
+    for (const [at, geometry] of [dome, floor].entries()) {
+      const mesh = new Mesh(geometry, this.#material);
+      mesh.renderOrder = PANELS_ORDER - 10 + at;
+      this.object.add(mesh);
+    }
     this.object.name = "pause room";
-    this.object.add(dome, ground);
     this.object.visible = false;
   }
 
+  /** Appear or disappear within 0.4 s. */
+  show(timeS: number, isShown: boolean): void {
+    const passed = Number.isNaN(this.#timeS) ? 0 : Math.max(0, timeS - this.#timeS);
+    this.#timeS = timeS;
+    const way = passed / FADE_S;
+    this.#share = Math.min(1, Math.max(0, this.#share + (isShown ? way : -way)));
+    this.#material.opacity = this.#share;
+    this.object.visible = this.#share > 0;
+  }
+
   dispose(): void {
-    for (const child of this.object.children) {
-      if (child instanceof Mesh) {
-        child.geometry.dispose();
-        child.material.dispose();
-      }
-    }
+    this.#material.dispose();
+    for (const child of this.object.children) if (child instanceof Mesh) child.geometry.dispose();
   }
 }
 

@@ -123,6 +123,7 @@ export function mirrorScreen(words: PanelWords): PanelScreen {
   ];
   return {
     key: "mirror",
+    isLow: true,
     title: words("mirror.title"),
     body: prose(words("mirror.body")),
     buttons,

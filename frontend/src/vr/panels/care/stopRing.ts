@@ -10,6 +10,7 @@ import {
   SRGBColorSpace,
 } from "three";
 import type { TrackedFrame } from "../../tracking/tracked";
+import { PANELS_ORDER } from "../../world";
 import { paintLabel } from "../surface/paint";
 import type { PanelWords } from "../texts";
 import type { StopProgress } from "./stopGesture";
@@ -51,7 +52,8 @@ export class StopRing {
       new MeshBasicMaterial({ ...onTop, map: this.#texture }),
     );
     label.position.y = -0.13;
-    for (const [at, mesh] of [track, this.#ring, label].entries()) mesh.renderOrder = 40 + at;
+    for (const [at, mesh] of [track, this.#ring, label].entries())
+      mesh.renderOrder = PANELS_ORDER + 10 + at;
     this.object.add(track, this.#ring, label);
     this.object.visible = false;
   }

@@ -118,9 +118,13 @@ function onPanel(
     page.problem(screen.problem);
   }
   const foot = footHeight(screen);
-  if (page.y + (foot === 0 ? 0 : SECTION) + foot > heightDmm - PADDING) return null;
-  page.foot(screen, heightDmm - PADDING);
-  return { widthDmm, heightDmm, marks: page.marks, targets: page.targets };
+  const needed = page.y + (foot === 0 ? 0 : SECTION) + foot + PADDING;
+  if (needed > heightDmm) return null;
+  // What is answered page by page keeps its size, so that the buttons stay where they are.
+  const isPaged = screen.choices !== undefined || (screen.buttons ?? []).length > 0;
+  const height = isPaged && !screen.isLow ? heightDmm : needed;
+  page.foot(screen, height - PADDING);
+  return { widthDmm, heightDmm: height, marks: page.marks, targets: page.targets };
 }
 
 const footHeight = ({ buttons, progress }: PanelScreen): number =>

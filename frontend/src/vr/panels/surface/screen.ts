@@ -49,6 +49,8 @@ export interface PanelButton {
 export interface PanelScreen {
   /** Names what is shown; a press right after it changed is not taken. */
   readonly key: string;
+  /** Stands below the view straight ahead, so that the mirror stays to be seen. */
+  readonly isLow?: boolean;
   /** A short line above the title: the stem of a questionnaire, the name of a step. */
   readonly lead?: string;
   readonly title?: string;

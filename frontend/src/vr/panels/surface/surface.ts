@@ -15,6 +15,7 @@ import {
   Vector2,
   Vector3,
 } from "three";
+import { PANELS_ORDER } from "../../world";
 import { type Layout, layOut, PANEL_DMM, type Rectangle, type Target } from "./layout";
 import { canvasMeasure, paint } from "./paint";
 import type { Board, Hit, Ray } from "./pointing";
@@ -24,13 +25,25 @@ import type { Measure } from "./wrap";
 /** Two pixels a dmm are 35 a degree; the lenses of a Quest 3 show 25. */
 const PIXELS_PER_DMM = 2;
 
-export const PANEL_DISTANCE_M = 1.6;
+/** As far as a panel should be to be looked at without effort; nearer before a wall. */
+export const PANEL_DISTANCE_M = 1.75;
 
 /** Far enough below the eyes that the neck rests, near enough that the room stays in view. */
 const BELOW_EYES_RAD = (7 * Math.PI) / 180;
 
-/** Drawn after the room: the panel's rounded corners are transparent. */
-const RENDER_ORDER = 20;
+/** Below the mirror image of the face and the arms. */
+const LOW_RAD = (26 * Math.PI) / 180;
+
+/** In front of the room, and of the curtain that hides it. */
+const RENDER_ORDER = PANELS_ORDER + 1;
+
+/** Readable whatever stands in the way, also what only the curtain hides. */
+const ON_TOP = {
+  transparent: true,
+  depthTest: false,
+  depthWrite: false,
+  toneMapped: false,
+} as const;
 
 export class PanelSurface {
   readonly object = new Group();
@@ -38,8 +51,8 @@ export class PanelSurface {
   readonly #context: CanvasRenderingContext2D;
   readonly #texture: CanvasTexture;
   readonly #panel: Mesh;
-  readonly #highlight = new RoundedMark(0.14);
-  readonly #cursor = new RoundedMark(1);
+  readonly #highlight = new RoundedMark(0.14, "#8fdce2", "#8fdce2");
+  readonly #cursor = new RoundedMark(1, "#ffffff", "#10191b");
   readonly #beam: Mesh;
   #layout: Layout | null = null;
   #hovered: string | null = null;
@@ -57,10 +70,10 @@ export class PanelSurface {
     this.#texture.anisotropy = 8;
     this.#texture.minFilter = LinearMipmapLinearFilter;
     this.#texture.magFilter = LinearFilter;
-    const drawn = { map: this.#texture, transparent: true, toneMapped: false, depthWrite: false };
-    this.#panel = new Mesh(new PlaneGeometry(1, 1), new MeshBasicMaterial(drawn));
-    const light = { color: "#e8f4f4", transparent: true, opacity: 0.5, toneMapped: false };
-    this.#beam = new Mesh(new CylinderGeometry(0.0012, 0.0022, 1, 6), new MeshBasicMaterial(light));
+    const drawn = new MeshBasicMaterial({ ...ON_TOP, map: this.#texture });
+    this.#panel = new Mesh(new PlaneGeometry(1, 1), drawn);
+    const light = new MeshBasicMaterial({ ...ON_TOP, color: "#e8f4f4", opacity: 0.5 });
+    this.#beam = new Mesh(new CylinderGeometry(0.0012, 0.0022, 1, 6), light);
     this.object.name = "panel";
     this.#panel.renderOrder = RENDER_ORDER;
     this.#highlight.mesh.renderOrder = RENDER_ORDER + 1;
@@ -97,18 +110,25 @@ export class PanelSurface {
     this.#layout = layOut(screen, this.measure);
     paint(this.#context, this.#layout);
     this.#texture.needsUpdate = true;
-    this.#panel.scale.set(this.#layout.widthDmm, this.#layout.heightDmm, 1);
+    const { widthDmm, heightDmm } = this.#layout;
+    this.#panel.scale.set(widthDmm, heightDmm, 1);
+    // A low panel uses the upper part of the canvas.
+    const { width, height } = this.#context.canvas;
+    const share = Math.min(1, (heightDmm / widthDmm) * (width / height));
+    this.#texture.repeat.set(1, share);
+    this.#texture.offset.set(0, 1 - share);
     this.#hovered = null;
     this.#highlight.mesh.visible = false;
   }
 
   /** Stand in front of somebody's eyes, upright towards them. */
-  place(eyesM: Vector, yawRad: number, distanceM = PANEL_DISTANCE_M): void {
+  place(eyesM: Vector, yawRad: number, distanceM = PANEL_DISTANCE_M, isLow = false): void {
     this.#distanceM = distanceM;
+    const below = isLow ? LOW_RAD : BELOW_EYES_RAD;
     const back: Vector = [
-      Math.sin(yawRad) * Math.cos(BELOW_EYES_RAD),
-      Math.sin(BELOW_EYES_RAD),
-      Math.cos(yawRad) * Math.cos(BELOW_EYES_RAD),
+      Math.sin(yawRad) * Math.cos(below),
+      Math.sin(below),
+      Math.cos(yawRad) * Math.cos(below),
     ];
     const rotation = facing(back, yawRad);
     const [x, y, z] = eyesM;
@@ -219,18 +239,17 @@ class RoundedMark {
   readonly #radius = { value: 1 };
   readonly #edge = { value: 1 };
 
-  constructor(fill: number) {
+  constructor(fill: number, colour: string, edgeColour: string) {
     const uniforms = {
       size: { value: this.#size },
       radius: this.#radius,
       edge: this.#edge,
       fill: { value: fill },
-      colour: { value: new Color("#8fdce2") },
+      colour: { value: new Color(colour) },
+      edgeColour: { value: new Color(edgeColour) },
     };
     const material = new ShaderMaterial({
-      transparent: true,
-      depthWrite: false,
-      toneMapped: false,
+      ...ON_TOP,
       uniforms,
       vertexShader: VERTICES,
       fragmentShader: FRAGMENTS,
@@ -262,13 +281,13 @@ const FRAGMENTS = `
   varying vec2 at;
   uniform vec2 size;
   uniform float radius, edge, fill;
-  uniform vec3 colour;
+  uniform vec3 colour, edgeColour;
   void main() {
     vec2 corner = abs(at) - 0.5 * size + radius;
     float outside = length(max(corner, 0.0)) + min(max(corner.x, corner.y), 0.0) - radius;
     float soft = max(fwidth(outside), 1e-4);
     float inside = 1.0 - smoothstep(-soft, soft, outside);
     float onEdge = smoothstep(-edge - soft, -edge + soft, outside);
-    gl_FragColor = vec4(colour, inside * mix(fill, 1.0, onEdge));
+    gl_FragColor = vec4(mix(colour, edgeColour, onEdge), inside * mix(fill, 1.0, onEdge));
     #include <colorspace_fragment>
   }`;
