@@ -21,6 +21,7 @@ from PIL import Image
 from playwright.sync_api import BrowserContext, Page, Route
 
 from app.adapters.humanoids import read_humanoid
+from tests.adapters.humanoids.vector_files import binding_json
 from tests.support.bundle import BASE, SCRIPT, bundled
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -212,15 +213,7 @@ def opened_room(
 
 def _body(name: str) -> dict[str, Any]:
     data = (BODIES / f"{name}.glb").read_bytes()
-    binding = read_humanoid(data).binding
     return {
         "file": base64.b64encode(data).decode(),
-        "binding": {
-            "stature_m": binding.stature_m,
-            "parts": list(binding.parts),
-            "parents": list(binding.parents),
-            "joints_m": binding.joints_m.tolist(),
-            "nodes": list(binding.nodes),
-            "part_from_node": binding.part_from_node.reshape(-1, 16).tolist(),
-        },
+        "binding": binding_json(read_humanoid(data).binding),
     }

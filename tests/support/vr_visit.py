@@ -103,7 +103,8 @@ class Visit:
 
     def view(self) -> Json:
         """Return the session as its operator sees it."""
-        return ok(self.operator.get(f"/api/sessions/{self.session_id}"))
+        view: Json = ok(self.operator.get(f"/api/sessions/{self.session_id}"))
+        return view
 
     def command(self, view: Json, kind: str, **fields: Any) -> bool:
         """Send a command; return whether it was not overtaken by another change."""

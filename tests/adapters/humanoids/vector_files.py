@@ -49,18 +49,23 @@ def poses(binding: Binding) -> dict[str, tuple[float, FloatArray, FloatArray]]:
     }
 
 
+def binding_json(binding: Binding) -> Json:
+    """Return a binding as the server sends it to pages."""
+    return {
+        "stature_m": binding.stature_m,
+        "parts": list(binding.parts),
+        "parents": list(binding.parents),
+        "joints_m": binding.joints_m.tolist(),
+        "nodes": list(binding.nodes),
+        "part_from_node": binding.part_from_node.reshape(-1, 16).tolist(),
+    }
+
+
 def vectors(data: bytes) -> Json:
     """Return the vectors of a model."""
     binding, skin = read_humanoid(data).binding, read_skin(data)
     return {
-        "binding": {
-            "stature_m": binding.stature_m,
-            "parts": list(binding.parts),
-            "parents": list(binding.parents),
-            "joints_m": binding.joints_m.tolist(),
-            "nodes": list(binding.nodes),
-            "part_from_node": binding.part_from_node.reshape(-1, 16).tolist(),
-        },
+        "binding": binding_json(binding),
         "cases": [
             {
                 "name": name,

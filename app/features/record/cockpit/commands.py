@@ -23,7 +23,7 @@ from app.science.avatar.configuration import AvatarSettingsError
 
 _NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop", "reopen_consent")
 _STARTS = ("start", "begin_phase")
-_OF_THE_BODY = ("change_avatar", "calibrate", "shift_tracker")
+_CALIBRATING = ("calibrate", "shift_tracker")
 CENTIMETRES_PER_METRE = 100.0
 _ENDS = ("pause", "skip", "complete_step", "abort", "withdraw")
 """Commands that end recording, so they are accepted even when the disk is full."""
@@ -45,8 +45,10 @@ def command_of(
     connected = context.hub.headset_connected(session.id)
     if request.type in _NEEDS_REASON:
         return _with_reason(request, store.put("reason", reason))
-    if request.type in _OF_THE_BODY:
-        return _of_the_body(db, context, session, request, store)
+    if request.type == "change_avatar":
+        return _avatar_change(db, context, session, request, store)
+    if request.type in _CALIBRATING:
+        return _calibration(context, session, request, store)
     match request.type:
         case "complete_step":
             content = _completion_content(store, request)
@@ -102,19 +104,6 @@ def _with_reason(request: CommandRequest, reason: ContentRef) -> Command:
             return c.Stop(status="aborted", content=reason)
         case _:
             return c.Stop(status="withdrawn", content=reason)
-
-
-def _of_the_body(
-    db: Session,
-    context: AppContext,
-    session: StudySession,
-    request: CommandRequest,
-    store: "_Store",
-) -> Command:
-    """Return the command that changes the avatar, or how the headset follows the participant."""
-    if request.type == "change_avatar":
-        return _avatar_change(db, context, session, request, store)
-    return _calibration(context, session, request, store)
 
 
 def _feet_tracked(db: Session, context: AppContext, session: StudySession) -> bool | None:

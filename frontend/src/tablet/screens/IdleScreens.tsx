@@ -2,35 +2,49 @@
 import { Button } from "@mantine/core";
 import type { TabletState } from "@shared/api/types";
 import { Mark } from "@shared/ui/Mark";
-import type { JSX } from "react";
+import type { JSX, ReactNode } from "react";
 import type { Refusal } from "../drafts/refusal";
 import { useTexts } from "../i18n";
 import { Prose } from "./Prose";
 import classes from "./screens.module.css";
+
+interface CalmProps {
+  readonly title: string;
+  readonly children: ReactNode;
+  /** What comes next, where that is known. */
+  readonly next?: string | null;
+}
+
+/** A screen with nothing to press. */
+function Calm({ title, children, next = null }: CalmProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.calm} role="status">
+      <span className={classes.breathing}>
+        <Mark size={64} />
+      </span>
+      <h1 className={classes.calmTitle}>{title}</h1>
+      <div className={classes.calmText}>{children}</div>
+      {next !== null && (
+        <p className={classes.next}>
+          <span className={classes.nextLabel}>{t("waiting.next")}</span>
+          {next}
+        </p>
+      )}
+    </div>
+  );
+}
 
 /**
  * Nothing to press at the moment: say so calmly, with what comes next, or show the step's own text.
  */
 export function Waiting({ state }: { readonly state: TabletState }): JSX.Element {
   const { t } = useTexts();
+  const title = state.is_own_text && state.title !== null ? state.title : t("waiting.title");
   return (
-    <div className={classes.calm} aria-live="polite">
-      <span className={classes.breathing}>
-        <Mark size={64} />
-      </span>
-      <h1 className={classes.calmTitle}>
-        {state.is_own_text && state.title !== null ? state.title : t("waiting.title")}
-      </h1>
-      <div className={classes.calmText}>
-        {state.text === null ? t("waiting.body") : <Prose text={state.text} />}
-      </div>
-      {state.next !== null && (
-        <p className={classes.next}>
-          <span className={classes.nextLabel}>{t("waiting.next")}</span>
-          {state.next}
-        </p>
-      )}
-    </div>
+    <Calm title={title} next={state.next}>
+      {state.text === null ? t("waiting.body") : <Prose text={state.text} />}
+    </Calm>
   );
 }
 
@@ -43,34 +57,16 @@ interface ElsewhereProps {
 export function AnsweredElsewhere({ state, where }: ElsewhereProps): JSX.Element {
   const { t } = useTexts();
   return (
-    <div className={classes.calm} role="status">
-      <span className={classes.breathing}>
-        <Mark size={64} />
-      </span>
-      <h1 className={classes.calmTitle}>{state.title ?? t("waiting.title")}</h1>
-      <p className={classes.calmText}>{t(`elsewhere.${where}`)}</p>
-      {state.next !== null && (
-        <p className={classes.next}>
-          <span className={classes.nextLabel}>{t("waiting.next")}</span>
-          {state.next}
-        </p>
-      )}
-    </div>
+    <Calm title={state.title ?? t("waiting.title")} next={state.next}>
+      {t(`elsewhere.${where}`)}
+    </Calm>
   );
 }
 
 /** A stop rule holds the session: calm words, no reason, and nothing to press. */
 export function OnHold(): JSX.Element {
   const { t } = useTexts();
-  return (
-    <div className={classes.calm} role="status">
-      <span className={classes.breathing}>
-        <Mark size={64} />
-      </span>
-      <h1 className={classes.calmTitle}>{t("held.wait.title")}</h1>
-      <p className={classes.calmText}>{t("held.wait.body")}</p>
-    </div>
-  );
+  return <Calm title={t("held.wait.title")}>{t("held.wait.body")}</Calm>;
 }
 
 interface RefusedProps {

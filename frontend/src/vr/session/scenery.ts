@@ -45,13 +45,13 @@ export class WorldScenery implements Scenery {
       remote: isActing,
       figure: place === "stepping_in",
       devices: !isActing,
-      setups: isActing ? this.#setups(state, run) : NO_SETUPS,
+      setups: isActing ? this.#setups(run) : NO_SETUPS,
     };
   }
 
   /** The boxes of the task; both in free movement, so that people get to know them. */
-  #setups({ step_kind: step }: HeadsetState, run: TimedRun | null): readonly Limb[] {
-    if (run === null) return step === "free_roam" ? this.#limbs : NO_SETUPS;
+  #setups(run: TimedRun | null): readonly Limb[] {
+    if (run === null) return NO_SETUPS;
     const { limb } = run.order;
     return limb === null ? this.#limbs : this.#limbs.filter((one) => one === limb);
   }

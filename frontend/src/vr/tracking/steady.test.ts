@@ -1,4 +1,4 @@
-import type { Goals } from "@shared/avatar/goals";
+import { type Goals, NO_GOALS } from "@shared/avatar/goals";
 import type { Place } from "@shared/avatar/hips";
 import { length, minus, plus, type Vector } from "@shared/rotations";
 import { describe, expect, it } from "vitest";
@@ -8,15 +8,6 @@ import { SteadyGoals } from "./steady";
 import type { TrackingDevice } from "./tracked";
 
 const RATE_HZ = 90;
-const NOTHING: Goals = {
-  Hips: null,
-  Head: null,
-  LeftHand: null,
-  RightHand: null,
-  LeftLowerLeg: null,
-  RightLowerLeg: null,
-};
-
 const at = (positionM: Vector, turnRad = 0): Place => ({
   positionM,
   rotation: turned([0, 1, 0], turnRad),
@@ -36,7 +27,7 @@ class Follower {
     set(frame.parts.Head, head, "headset");
     if (hand === null) lose(frame.parts.LeftHand);
     else set(frame.parts.LeftHand, hand, device);
-    const goal = this.steady.steady(frame, { ...NOTHING, Head: head, LeftHand: hand }).LeftHand;
+    const goal = this.steady.steady(frame, { ...NO_GOALS, Head: head, LeftHand: hand }).LeftHand;
     if (goal !== null && this.before !== null) {
       const speed = RATE_HZ * length(minus(goal.positionM, this.before));
       this.fastest = Math.max(this.fastest, speed);
@@ -119,10 +110,10 @@ describe("Steady goals", () => {
     const steady = new SteadyGoals();
     const frame = frameBuffer();
     set(frame.parts.Hips, at([0, 0.9, 0]), "tracker");
-    expect(steady.steady(frame, { ...NOTHING, Hips: at([0, 0.9, 0]) }).Hips).not.toBeNull();
+    expect(steady.steady(frame, { ...NO_GOALS, Hips: at([0, 0.9, 0]) }).Hips).not.toBeNull();
     lose(frame.parts.Hips);
     frame.parts.Hips.state = "inferred";
     frame.timeS = 1 / RATE_HZ;
-    expect(steady.steady(frame, NOTHING).Hips).toBeNull();
+    expect(steady.steady(frame, NO_GOALS).Hips).toBeNull();
   });
 });

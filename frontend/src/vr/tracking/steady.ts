@@ -10,7 +10,7 @@
  *
  * It works on joints, after calibration, since different devices sit at different offsets.
  */
-import { GOAL_PARTS, type Goals } from "@shared/avatar/goals";
+import { GOAL_PARTS, type Goals, NO_GOALS } from "@shared/avatar/goals";
 import type { Place } from "@shared/avatar/hips";
 import {
   minus,
@@ -56,14 +56,7 @@ export class SteadyGoals {
   private readonly memories = Object.fromEntries(
     GOAL_PARTS.map((part) => [part, memory()]),
   ) as Record<GoalPart, Memory>;
-  private readonly goals: Record<GoalPart, Place | null> = {
-    Hips: null,
-    Head: null,
-    LeftHand: null,
-    RightHand: null,
-    LeftLowerLeg: null,
-    RightLowerLeg: null,
-  };
+  private readonly goals: Record<GoalPart, Place | null> = { ...NO_GOALS };
   private isRestarted = false;
 
   /** Fade from what was shown to what is shown next, such as after a calibration or a recentring. */

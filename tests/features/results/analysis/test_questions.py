@@ -120,7 +120,7 @@ def test_sessions_without_fingers_enter_no_mean_by_finger(database: Database) ->
 def test_bodies_are_those_of_the_versions_that_ran(database: Database) -> None:
     """Sessions of an older version whose conditions share a latency are analysed by body."""
     text = with_bodies("female", "male", physics=False)
-    text = text.replace(*(f"avatar: {one}" for one in ("delayed_copy", PHYSICS)), 1)
+    text = text.replace("avatar: delayed_copy", f"avatar: {PHYSICS}", 1)
     with database.writing() as db:
         add_shipped_bodies(db, NOW)
         add_shipped_avatar(db, NOW)

@@ -47,7 +47,7 @@ export class HandReader {
     const isSeen =
       source.hand === undefined || source.hand === null
         ? this.readController(source, frame, space, part, into)
-        : this.readJoints(source.hand, frame, space, timeS, part, into);
+        : this.readJoints(source.hand, part, into, frame, space, timeS);
     if (isSeen) into.ray = this.ray(source, frame, space);
     return isSeen;
   }
@@ -76,11 +76,11 @@ export class HandReader {
 
   private readJoints(
     hand: XRHand,
+    part: MutablePart,
+    into: MutableHand,
     frame: XRFrame,
     space: XRReferenceSpace,
     timeS: number,
-    part: MutablePart,
-    into: MutableHand,
   ): boolean {
     this.locate(hand, frame, space);
     const wrist = this.positions.get("wrist");
