@@ -23,7 +23,7 @@ from app.science.avatar.configuration import AvatarSettingsError
 
 _NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop", "reopen_consent")
 _STARTS = ("start", "begin_phase")
-_CALIBRATING = ("calibrate", "shift_tracker")
+_OF_THE_BODY = ("change_avatar", "calibrate", "shift_tracker")
 CENTIMETRES_PER_METRE = 100.0
 _ENDS = ("pause", "skip", "complete_step", "abort", "withdraw")
 """Commands that end recording, so they are accepted even when the disk is full."""
@@ -45,10 +45,12 @@ def command_of(
     connected = context.hub.headset_connected(session.id)
     if request.type in _NEEDS_REASON:
         return _with_reason(request, store.put("reason", reason))
-    if request.type == "change_avatar":
-        return _avatar_change(db, context, session, request, store)
-    if request.type in _CALIBRATING:
-        return _calibration(context, session, request, store)
+    if request.type in _OF_THE_BODY:
+        return (
+            _avatar_change(db, context, session, request, store)
+            if request.type == "change_avatar"
+            else _calibration(context, session, request, store)
+        )
     match request.type:
         case "complete_step":
             content = _completion_content(store, request)

@@ -1,7 +1,6 @@
 /** What the participant sees in each place of the visit: the world, told what is to be seen. */
 import type { Limb, TimedRun } from "../tasks";
 import { BoxRun, currentGoal, displayedNumbers, surfaceColours } from "../tasks";
-import type { HeadsetState } from "../telemetry";
 import type { TrackedFrame } from "../tracking/tracked";
 import type { Device, TaskShown, Visible, World } from "../world";
 import type { Place, Scenery, View } from "./ports";
@@ -22,13 +21,13 @@ export class WorldScenery implements Scenery {
   }
 
   show(view: View): void {
-    const { timeS, place, state, tracked, bodies, run } = view;
+    const { timeS, place, tracked, bodies, run } = view;
     const isTask = run instanceof BoxRun;
     this.#world.show({
       timeS,
       eyes: tracked.eyes,
       bodies,
-      visible: this.#visible(place, state, run, bodies !== null),
+      visible: this.#visible(place, run, bodies !== null),
       devices: place === "acting" ? NO_DEVICES : devicesOf(tracked),
       task: isTask ? this.#taskOf(run) : null,
       remainingS: run === null ? null : remainingS(run, timeS),
@@ -38,7 +37,7 @@ export class WorldScenery implements Scenery {
     });
   }
 
-  #visible(place: Place, state: HeadsetState, run: TimedRun | null, hasBodies: boolean): Visible {
+  #visible(place: Place, run: TimedRun | null, hasBodies: boolean): Visible {
     const isActing = place === "acting" && hasBodies;
     return {
       local: false,

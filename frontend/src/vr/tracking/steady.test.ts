@@ -1,4 +1,4 @@
-import { type Goals, NO_GOALS } from "@shared/avatar/goals";
+import { NO_GOALS } from "@shared/avatar/goals";
 import type { Place } from "@shared/avatar/hips";
 import { length, minus, plus, type Vector } from "@shared/rotations";
 import { describe, expect, it } from "vitest";
