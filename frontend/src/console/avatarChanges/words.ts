@@ -2,6 +2,7 @@
 import type { AvatarChanges } from "@shared/api/types";
 import { number } from "@shared/format";
 import type { Key, useTexts } from "../i18n";
+import { axisName } from "./axes";
 import { avatarChangesEn } from "./texts";
 
 type Texts = ReturnType<typeof useTexts>;
@@ -13,7 +14,7 @@ const has = (key: string): key is keyof typeof avatarChangesEn =>
 const JOINTS =
   /^(Hips|Spine|Chest|UpperChest|Neck|Head|(Left|Right)(Shoulder|UpperArm|LowerArm|Hand|UpperLeg|LowerLeg|Foot|Toes))$/;
 
-/** The name of a body group or part; axes and parts of fingers keep their own names. */
+/** The name of a body group or part; parts of fingers keep their own names. */
 export function groupName({ t }: Pick<Texts, "t">, group: string): string {
   if (has(`bodyGroup.${group}`)) return t(`bodyGroup.${group}` as Key);
   if (JOINTS.test(group)) return t(`joint.${group}` as Key);
@@ -42,7 +43,9 @@ export function changeWords(texts: Texts, changes: AvatarChanges | null | undefi
     words.push(t("avatarChanges.say.released", { group: group(one) }));
   }
   for (const { group: name, held_deg } of changes.casts ?? []) {
-    const angles = Object.entries(held_deg ?? {}).map(([axis, angle]) => `${axis} ${of(angle)}°`);
+    const angles = Object.entries(held_deg ?? {}).map(
+      ([axis, angle]) => `${axisName(texts, axis)} ${of(angle)}°`,
+    );
     words.push(
       angles.length === 0
         ? t("avatarChanges.say.cast", { group: group(name) })

@@ -19,6 +19,7 @@ import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, type ReactNode, useState } from "react";
+import { axisName, isFound } from "../../avatarChanges/axes";
 import { groupName, layerName } from "../../avatarChanges/words";
 import { type Key, useTexts } from "../../i18n";
 import { DialogButtons } from "../../ui/DialogButtons";
@@ -259,7 +260,9 @@ function GroupSelect({ groups, value, onChange }: GroupSelectProps): JSX.Element
 }
 
 function Casts({ choices, changes, set }: PartProps): JSX.Element {
-  const { t } = useTexts();
+  const texts = useTexts();
+  const { t } = texts;
+  const axes = choices.axes.map(({ axis }) => ({ value: axis, label: axisName(texts, axis) }));
   return (
     <Rows
       title="avatarChanges.casts"
@@ -279,8 +282,8 @@ function Casts({ choices, changes, set }: PartProps): JSX.Element {
               <NumberInput
                 key={axis}
                 size="xs"
-                aria-label={t("avatarChanges.angle", { axis })}
-                prefix={`${axis}: `}
+                label={axisName(texts, axis)}
+                aria-label={t("avatarChanges.angle", { axis: axisName(texts, axis) })}
                 suffix="°"
                 value={angle}
                 {...limitsOf(choices, axis)}
@@ -294,7 +297,18 @@ function Casts({ choices, changes, set }: PartProps): JSX.Element {
               aria-label={t("avatarChanges.angle.add")}
               placeholder={t("avatarChanges.angle.add")}
               searchable
-              data={choices.axes.map(({ axis }) => axis)}
+              data={axes}
+              filter={({ search }) =>
+                axes.filter(({ label, value }) => isFound(search, label, value))
+              }
+              renderOption={({ option }) => (
+                <div>
+                  {option.label}
+                  <Text size="xs" c="dimmed">
+                    {option.value}
+                  </Text>
+                </div>
+              )}
               value={null}
               onChange={(axis) =>
                 axis !== null && change({ ...cast, held_deg: { ...cast.held_deg, [axis]: 0 } })
