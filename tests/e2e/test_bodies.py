@@ -31,6 +31,8 @@ def test_a_body_is_uploaded_checked_and_named(
     (tmp_path / "dog.glb").write_bytes(dog_file())
     page.goto(f"{running_server.url}/#/bodies")
     expect(page.get_by_role("heading", name="Three statures")).to_be_visible(timeout=PATIENCE_MS)
+    # Statures compare best from the front.
+    expect(page.locator("canvas[data-side=front]")).to_be_visible(timeout=PATIENCE_MS)
     chosen = page.locator("input[type=file]")
     chosen.set_input_files([tmp_path / "dog.glb", tmp_path / "Worn once.glb"])
     expect(page.get_by_role("alert")).to_contain_text("no LeftUpperArm", timeout=PATIENCE_MS)

@@ -33,7 +33,12 @@ export function StatureCard({ hash }: { readonly hash: string }): JSX.Element {
       </Title>
       <p className={classes.soft}>{t("bodies.statures.lead")}</p>
       <div className={classes.beside}>
-        <BodyViewer hash={hash} name={t("bodies.statures")} staturesM={STATURES_M} />
+        <BodyViewer
+          hash={hash}
+          name={t("bodies.statures")}
+          staturesM={STATURES_M}
+          firstSide="front"
+        />
         <Loaded query={useQuery(capturesQuery)}>
           {(page) => <Steps usable={page.captures.filter((one) => one.has_skeleton)} />}
         </Loaded>

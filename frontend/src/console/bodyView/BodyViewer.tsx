@@ -27,6 +27,8 @@ export interface BodyViewerProps {
   readonly staturesM?: readonly number[];
   /** Height of the picture in CSS; by default a part of the window's. */
   readonly height?: string;
+  /** From where the camera looks first. */
+  readonly firstSide?: CameraSide;
 }
 
 const SIDES: readonly CameraSide[] = ["corner", "front", "side", "back", "top"];
@@ -35,7 +37,7 @@ const APART = 1.05;
 const OWN: readonly number[] = [];
 
 export function BodyViewer(props: BodyViewerProps): JSX.Element {
-  const { hash, name, staturesM = OWN, height = "clamp(320px, 52vh, 620px)" } = props;
+  const { hash, name, staturesM = OWN, height = "clamp(320px, 52vh, 620px)", firstSide } = props;
   const { t } = useTexts();
   const texts = useStageTexts();
   const body = useBody(hash);
@@ -82,6 +84,7 @@ export function BodyViewer(props: BodyViewerProps): JSX.Element {
         {figures.length > 0 && (
           <Stage
             handle={stage}
+            {...(firstSide === undefined ? {} : { firstSide })}
             figures={figures}
             time={playback.time}
             mode="orbit"

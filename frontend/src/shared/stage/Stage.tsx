@@ -42,6 +42,8 @@ interface StageProps {
   readonly label: string;
   readonly texts: StageTexts;
   readonly handle?: Ref<StageHandle>;
+  /** From where the camera looks when the stage opens, and at each new floor. */
+  readonly firstSide?: CameraSide;
   /** Must be the same array while the blocks are the same. */
   readonly blocks?: readonly Block[];
   /**
@@ -60,6 +62,7 @@ const ALL_PLAIN: BlockTones = new Map();
 export function Stage(props: StageProps): JSX.Element {
   const { figures, time, mode, label, texts, handle } = props;
   const { blocks = NO_BLOCKS, comparedFigures = NOBODY, tones = ALL_PLAIN } = props;
+  const { firstSide = "corner" } = props;
   const root = useRef<HTMLDivElement>(null);
   const { drawingState, stage, step } = useStage3d(root, {
     figures,
@@ -68,6 +71,7 @@ export function Stage(props: StageProps): JSX.Element {
     blocks,
     comparedFigures,
     tones,
+    firstSide,
   });
   const [pointed, setPointed] = useState<Pointed | null>(null);
   useImperativeHandle(handle, () => ({
@@ -121,15 +125,17 @@ interface StageContent {
   readonly blocks: readonly Block[];
   readonly comparedFigures: readonly Figure[];
   readonly tones: BlockTones;
+  readonly firstSide: CameraSide;
 }
 
 function useStage3d(root: React.RefObject<HTMLDivElement | null>, shown: StageContent) {
   const scheme = useComputedColorScheme("light");
   const { drawingState, drawing: stage } = useDrawing(root, loadStage);
-  const { figures, blocks, comparedFigures, tones, mode, time } = shown;
+  const { figures, blocks, comparedFigures, tones, mode, time, firstSide } = shown;
   const newest = useRef(tones);
   newest.current = tones;
   const [step, setStep] = useState(1);
+  useEffect(() => stage?.setFirstSide(firstSide), [stage, firstSide]);
   // Set the time first: figures on a new floor are framed as they are at that moment.
   useEffect(() => stage?.setMode(mode), [stage, mode]);
   useEffect(() => stage?.show(time), [stage, time]);

@@ -36,6 +36,7 @@ export class Stage3d extends Space3d {
   readonly #controls: OrbitControls;
   #plan: FloorPlan | null = null;
   #ground = "";
+  #firstSide: CameraSide = "corner";
   #mode: CameraMode = "orbit";
   #time = 0 as Seconds;
   #followed: Vector3 | null = null;
@@ -49,6 +50,11 @@ export class Stage3d extends Space3d {
     this.#controls.enableDamping = false;
     this.#controls.maxPolarAngle = 0.495 * Math.PI;
     this.#controls.addEventListener("change", () => this.requestPicture());
+  }
+
+  /** Set from where the camera looks at a new floor; set it before the figures. */
+  setFirstSide(from: CameraSide): void {
+    this.#firstSide = from;
   }
 
   /** Put figures on the stage; the camera stays where it is while the floor is the same. */
@@ -68,7 +74,7 @@ export class Stage3d extends Space3d {
       this.#plan = plan;
       this.#ground = palette.ground;
     }
-    if (isElsewhere) this.placeCamera("corner");
+    if (isElsewhere) this.placeCamera(this.#firstSide);
     else this.show(this.#time);
   }
 
@@ -113,7 +119,7 @@ export class Stage3d extends Space3d {
     this.#controls.enabled = mode !== "eyes";
     this.camera.fov = mode === "eyes" ? WIDE_DEG : USUAL_DEG;
     this.camera.updateProjectionMatrix();
-    if (wasInside) this.placeCamera("corner");
+    if (wasInside) this.placeCamera(this.#firstSide);
     else this.show(this.#time);
   }
 
@@ -131,6 +137,7 @@ export class Stage3d extends Space3d {
     this.camera.position.copy(view.middle).addScaledVector(away, view.distance);
     this.#followed = null;
     this.#controls.update();
+    this.renderer.domElement.dataset.side = from;
     this.show(this.#time);
   }
 
@@ -150,7 +157,7 @@ export class Stage3d extends Space3d {
   }
 
   protected override resized(before: number): void {
-    if (before === 1) this.placeCamera("corner");
+    if (before === 1) this.placeCamera(this.#firstSide);
   }
 
   override dispose(): void {
