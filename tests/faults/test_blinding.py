@@ -282,7 +282,7 @@ def test_a_session_that_gave_up_its_slot_does_not_reveal_the_order(fresh_lab: La
 
 def test_every_column_named_after_a_condition_is_emptied_or_harmless() -> None:
     """Every column named after what only a condition has is emptied or harmless."""
-    telling = re.compile("condition|latency|^body$|order|hash|slot|delay|lag")
+    telling = re.compile("condition|latency|compensated|^body$|order|hash|slot|delay|lag")
     told = {
         column.name
         for column in CODEBOOK
