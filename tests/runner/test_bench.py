@@ -11,10 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.benchmarks import against
+from tests.benchmarks import against, vr
 from tests.benchmarks.__main__ import NAMES, main, parser
 from tests.benchmarks.against import SHORT, check_out, compare, differing_files, interval
 from tests.benchmarks.report import CannotMeasure, Figure, Report
+from tests.protocol.helpers import SHIPPED, loaded
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 BENCHMARKS = REPOSITORY / "tests" / "benchmarks"
@@ -86,8 +87,17 @@ def asked(*arguments: str) -> argparse.Namespace:
 
 def test_only_benchmarks_are_offered() -> None:
     """Only modules that measure are offered as benchmarks, not the command or helpers."""
-    assert {"avatar", "desk", "retargeting", "telemetry", "walking"} <= set(NAMES)
+    assert {"avatar", "desk", "retargeting", "telemetry", "vr", "walking"} <= set(NAMES)
     assert not {"__main__", "against", "report", "codecs", "walking_maps"} & set(NAMES)
+
+
+def test_the_visit_of_the_headsets_page_lasts_as_long_as_asked() -> None:
+    """The benchmark's study is the shipped one with physics; only its timed phases are shorter."""
+    shipped, asked_for = loaded(SHIPPED).protocol, loaded(vr.study_of(7.0)).protocol
+    assert asked_for.key == vr.STUDY
+    assert {phase.duration_s for phase in asked_for.procedure.block.phases} == {7.0}
+    assert asked_for.avatar == shipped.avatar == "physics"
+    assert asked_for.tasks == shipped.tasks
 
 
 def test_short_forms_name_existing_parts() -> None:

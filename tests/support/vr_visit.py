@@ -6,6 +6,7 @@ browser a headset, a clock that the test steps, and a participant who wears it. 
 real: pairing, the socket, the workers, the session and its record.
 """
 
+import base64
 import time
 import uuid
 from collections.abc import Callable
@@ -29,6 +30,14 @@ ENDED = ("completed", "aborted", "withdrawn")
 OVERTAKEN = ("stale", "not_now")
 """Error codes of a command that came after the headset's own change."""
 FRAMES_AT_ONCE = 45
+# Read in the task that draws it: the browser empties the canvas afterwards.
+PICTURE = """() => {
+    const before = reembody.isRendering;
+    reembody.isRendering = true;
+    journey.clock.step();
+    reembody.isRendering = before;
+    return document.querySelector("[data-webxr_runtime] canvas").toDataURL("image/png");
+}"""
 
 
 def journey_script(folder: Path) -> Path:
@@ -69,6 +78,11 @@ class WornHeadset:
     def step(self, frames: int) -> float:
         """Draw frames; return the time of the last one, s."""
         return float(self.page.evaluate("(frames) => journey.step(frames)", frames))
+
+    def picture(self) -> bytes:
+        """Draw a frame and return what both eyes see in it as a PNG file."""
+        data = str(self.page.evaluate(PICTURE))
+        return base64.b64decode(data.partition(",")[2])
 
     def tell(self, expression: str) -> Any:
         """Return the value of a JavaScript expression in the page."""
