@@ -35,7 +35,9 @@ PARTS = ("session", "frame", "latency", "mirror", "weight")
 VISITS = frozenset({"session", "frame", "latency"})
 STUDY = "headset-benchmark"
 TIME_SCALE = 10.0
-PHASE_S, ROAM_S = 20.0, 10.0
+PHASE_S, ROAM_S = 20.0, 5.0
+AROUND_S = 1.0
+"""Preparation and freeze of a phase, s."""
 SPEED_LIMIT = 1.5
 FRAME_LIMIT_MS, LOOP_LIMIT = 2.5, 1.3
 LATENCY_LIMIT_MS = 11.1
@@ -74,6 +76,7 @@ def study_of(duration_s: float, key: str = STUDY) -> str:
     """Return the shipped study under another key, with phases of this active time."""
     text = SHIPPED.replace("key: reembodiment-latency", f"key: {key}", 1)
     text = text.replace("duration_s: 120", f"duration_s: {ROAM_S:g}")
+    text = re.sub(r"(preparation_s|freeze_s): 5\b", rf"\1: {AROUND_S:g}", text)
     return re.sub(r"duration_s: 60\b", f"duration_s: {duration_s:g}", text)
 
 
@@ -210,7 +213,8 @@ def _latencies(done: _Visited) -> list[Figure]:
         expected_ms = one["latency_ms"] + 1000.0 * done.added_s[one["phase_id"]]
         achieved_ms = one["achieved_latency_ms"]
         if achieved_ms is None:
-            raise RuntimeError(f"no achieved latency ({name}): {one['latency_reason']}")
+            found.append(Figure("latency", f"{name}: not measured", 1, "", "at most", 0))
+            continue
         off_ms = abs(achieved_ms - expected_ms)
         found += [
             Figure(

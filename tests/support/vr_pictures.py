@@ -25,6 +25,7 @@ STUDY = "headset-pictures"
 IMAGES = DOCS / "images"
 SIZE_PX: ViewportSize = {"width": 960, "height": 480}
 """Both eyes beside each other."""
+ROAM_S, HAND_S = 3, 8
 INTO_PHASE_FRAMES = 3 * FRAMES_AT_ONCE
 
 
@@ -38,17 +39,15 @@ def main() -> None:
         browser.new_context(viewport=SIZE_PX) as context,
     ):
         text = SHIPPED.replace("key: reembodiment-latency", f"key: {STUDY}", 1)
-        text = re.sub(r"duration_s: (60|120)", "duration_s: 20", text)
+        text = text.replace("duration_s: 120", f"duration_s: {ROAM_S}")
+        text = text.replace("duration_s: 60", f"duration_s: {HAND_S}", 1)
+        text = re.sub(r"(preparation_s|freeze_s): 5", r"\1: 0.3", text)
         ok(site.operator.post("/api/studies", json={"yaml": text}))
         script = journey_script(Path(folder))
         visit, tablet = begun(site.operator, context, script, server.url, STUDY, time_scale=10.0)
         with tablet:
             _take(visit, "free-roam", "free_roam", None)
-            visit.headset.do("journey.isWilling = false")
-            _take(visit, "mirror", "task", "hand")
-            visit.headset.do("journey.isWilling = true")
             _take(visit, "hand-task", "task", "hand")
-            _take(visit, "foot-task", "task", "foot")
 
 
 def _take(visit: Visit, name: str, kind: str, limb: str | None) -> None:
