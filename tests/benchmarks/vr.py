@@ -27,7 +27,7 @@ from tests.features.record.headset.site import open_site
 from tests.protocol.helpers import SHIPPED, loaded
 from tests.support.bodies_page import frame_times, shipped_avatar
 from tests.support.browser import launched_browser
-from tests.support.room import MOMENTS, Drawn, opened_room, visible
+from tests.support.room import EVERYTHING, MOMENTS, Drawn, opened_room
 from tests.support.server import LiveServer
 from tests.support.vr_visit import FRAME_RATE_HZ, Json, begun, journey_script, ok
 
@@ -234,16 +234,8 @@ def _mirror(browser: Browser, folder: Path) -> tuple[Figure, ...]:
     """Draw everything that can be seen at once, and free roam with both kinds of mirror."""
     part = "mirror"
     study = yaml.safe_load(SHIPPED)
-    everything = {
-        **MOMENTS["hand_task"],
-        "visible": visible("hand", "foot", local=True, remote=True, figure=True, devices=True),
-        "controllers": True,
-        "isBoundarySmall": True,
-        "isCurtainDrawn": True,
-        "frames": 9,
-    }
     with browser.new_context() as context, opened_room(context, folder, study) as room:
-        full = room.draw(everything)
+        full = room.draw(EVERYTHING)
     pictures: dict[str, Drawn] = {}
     for mirror in ("double", "reflector"):
         with (

@@ -23,7 +23,7 @@ def test_the_study_is_acted_on_this_screen_after_one_click(
     console = Experimenter(page, headset_site.server.url)
     console.log_in()
     page.goto(f"{headset_site.server.url}/#/sessions/{view['id']}")
-    act = page.get_by_role("button", name="Act here")
+    act = page.get_by_role("button", name="Act on this screen")
     expect(act).to_be_visible(timeout=PATIENCE_MS)
     with page.expect_popup() as opened:
         act.click()

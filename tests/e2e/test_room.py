@@ -9,7 +9,7 @@ import yaml
 from numpy.typing import NDArray
 
 from tests.support.browser import ContextFactory
-from tests.support.room import IN_FRONT, MOMENTS, ROOT, opened_room, visible
+from tests.support.room import EVERYTHING, IN_FRONT, MOMENTS, ROOT, opened_room
 
 MOST_CALLS, MOST_TRIANGLES = 20, 100_000
 STUDY = ROOT / "study_configs/reembodiment-latency.yaml"
@@ -39,16 +39,8 @@ def test_an_eye_takes_few_draw_calls_and_never_changes_its_target(
     new_context: ContextFactory, study: dict[str, Any], bundle: Path
 ) -> None:
     """Everything that can be seen at once takes at most 20 draw calls, into one framebuffer."""
-    everything = {
-        **MOMENTS["hand_task"],
-        "visible": visible("hand", "foot", local=True, remote=True, figure=True, devices=True),
-        "controllers": True,
-        "isBoundarySmall": True,
-        "isCurtainDrawn": True,
-        "frames": 9,
-    }
     with opened_room(new_context(), bundle, study) as room:
-        drawn = room.draw(everything)
+        drawn = room.draw(EVERYTHING)
 
         assert drawn.calls <= MOST_CALLS
         assert 20_000 < drawn.triangles <= MOST_TRIANGLES

@@ -110,6 +110,15 @@ MOMENTS: dict[str, Moment] = {
     },
 }
 """Moments of a visit in the shipped study, as its participant sees them."""
+EVERYTHING: Moment = {
+    **MOMENTS["hand_task"],
+    "visible": visible("hand", "foot", local=True, remote=True, figure=True, devices=True),
+    "controllers": True,
+    "isBoundarySmall": True,
+    "isCurtainDrawn": True,
+    "frames": 9,
+}
+"""All that can be seen at once; more than a visit ever shows."""
 IN_FRONT: Moment = {
     "pose": _ARMS_DOWN,
     "visible": visible(remote=True),

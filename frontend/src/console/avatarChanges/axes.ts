@@ -29,7 +29,7 @@ const THUMB: Readonly<Record<Letter, Movement>> = {
   Y: "axis.move.bend",
   Z: "axis.move.palm",
 };
-/** The limits and directions of these axes are those of `shared/avatar/anatomy.generated.ts`. */
+/** The limits and directions of these axes are those of `anatomy.generated.ts`. */
 const MOVEMENTS: Readonly<Record<string, Readonly<Record<Letter, Movement>>>> = {
   Spine: TRUNK,
   Chest: TRUNK,

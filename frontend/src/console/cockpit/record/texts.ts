@@ -8,7 +8,7 @@ export const sideEn = {
   "device.pair": "Pair",
   "device.pair.tablet": "Pair the tablet",
   "device.pair.headset": "Pair the headset",
-  "device.desktop": "Act here",
+  "device.desktop": "Act on this screen",
   "device.desktop.title": "Take the participant's place on this screen, with mouse and keyboard",
   "device.connected": "connected",
   "device.lost": "not connected",
@@ -75,7 +75,7 @@ export const sideDe: Readonly<Record<keyof typeof sideEn, string>> = {
   "device.pair": "Koppeln",
   "device.pair.tablet": "Tablet koppeln",
   "device.pair.headset": "Headset koppeln",
-  "device.desktop": "Hier handeln",
+  "device.desktop": "Auf diesem Bildschirm handeln",
   "device.desktop.title":
     "Auf diesem Bildschirm mit Maus und Tastatur an die Stelle der teilnehmenden Person treten",
   "device.connected": "verbunden",
