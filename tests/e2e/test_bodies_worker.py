@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from app.protocol.avatar import file_of
-from app.science.avatar.mjcf.gains import default_configuration
+from app.science.avatar.mjcf import default_configuration
 from tests.support.browser import ContextFactory, PageWatch
 from tests.support.bundle import bundled
 from tests.support.server import LiveServer
