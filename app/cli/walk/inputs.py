@@ -191,7 +191,8 @@ def _tracks(path: Path, people: People, tables: Tables) -> list[Track]:
         walker = Walker(subject, path.name, people.statures_m.get(subject))
         return [track_of_motion(read_capture_file(path).motion, walker)]
     except (CaptureError, WalkingError, RigError) as error:
-        raise ValueError(f"{path}: {error}") from error
+        option = " (--rate-hz)" if "frame rate is not specified" in str(error) else ""
+        raise ValueError(f"{path}: {error}{option}") from error
 
 
 def _header(path: Path) -> set[str]:

@@ -5,44 +5,16 @@
  * Rest pose: the T-pose, every local rotation the identity, world axes x right, y up, -z forward. A
  * pose is what the streams carry: root position x, y, z, then 22 local rotations w, x, y, z.
  */
+import { JOINTS, JOINT_PARENTS as PARENTS } from "@shared/avatar/anatomy.generated";
 import { multiply, plus, type Quaternion, rotate, times, type Vector } from "@shared/rotations";
 
-/** The joints in the order of the streams (docs/protocol.md, section 6). */
-export const JOINTS = [
-  "Hips",
-  "Spine",
-  "Chest",
-  "UpperChest",
-  "Neck",
-  "Head",
-  "LeftShoulder",
-  "LeftUpperArm",
-  "LeftLowerArm",
-  "LeftHand",
-  "RightShoulder",
-  "RightUpperArm",
-  "RightLowerArm",
-  "RightHand",
-  "LeftUpperLeg",
-  "LeftLowerLeg",
-  "LeftFoot",
-  "LeftToes",
-  "RightUpperLeg",
-  "RightLowerLeg",
-  "RightFoot",
-  "RightToes",
-] as const;
+export { JOINTS, PARENTS };
 export type Joint = (typeof JOINTS)[number];
 
 export const POSE_VALUES = 3 + 4 * JOINTS.length;
 export const INDEX = Object.fromEntries(JOINTS.map((name, index) => [name, index])) as Readonly<
   Record<Joint, number>
 >;
-
-/** Index of each joint's parent; -1 for the hips. */
-export const PARENTS: readonly number[] = [
-  -1, 0, 1, 2, 3, 4, 3, 6, 7, 8, 3, 10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20,
-];
 
 // Positions in the T-pose as fractions of the stature; arms from the shoulder joint on, apart.
 const CENTRE: Readonly<Record<string, Vector>> = {
