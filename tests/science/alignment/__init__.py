@@ -1,0 +1,1 @@
+"""Tests of bringing trackers into the headset's world."""
