@@ -32,10 +32,10 @@ def build_pages(frontend: Path, static: Path, *, every_package: bool = False) ->
     if not (frontend / "package.json").is_file():
         say(f"no pages to build: {frontend / 'package.json'} does not exist")
         return
-    if are_current(frontend, static):
-        return
     expected_hash = sources_hash(frontend)
     stamp = static / STAMP
+    if _built_from(stamp) == expected_hash:
+        return
     stamp.unlink(missing_ok=True)
     install_packages(frontend, every_package=every_package)
     say("building the pages")
@@ -47,8 +47,12 @@ def build_pages(frontend: Path, static: Path, *, every_package: bool = False) ->
 
 def are_current(frontend: Path, static: Path) -> bool:
     """Return whether `static` was built from the current `frontend`."""
-    stamp = static / STAMP
-    return stamp.is_file() and stamp.read_text().strip() == sources_hash(frontend)
+    built_from = _built_from(static / STAMP)
+    return built_from is not None and built_from == sources_hash(frontend)
+
+
+def _built_from(stamp: Path) -> str | None:
+    return stamp.read_text().strip() if stamp.is_file() else None
 
 
 def install_packages(frontend: Path, *, every_package: bool) -> None:

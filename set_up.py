@@ -35,7 +35,7 @@ PYTHON = VENV / "bin" / "python"
 TOOLS = ROOT / ".cache" / "build"
 FRONTEND = ROOT / "frontend"
 # What a server imports before it listens; importing it compiles it and has no other effect.
-STARTS = "import app.cli.commands, app.main, uvicorn.protocols.http.httptools_impl"
+STARTS = "import app.cli.serve.run, uvicorn.protocols.http.httptools_impl"
 PROGRESS_EVERY_S = 20.0
 TERMINATED = 128 + signal.SIGTERM
 
@@ -53,9 +53,9 @@ class Stamp:
 
     file: Path
 
-    def says(self, *accepted: str) -> bool:
-        """Return whether the step is done for one of these keys."""
-        return self.file.is_file() and self.file.read_text().strip() in accepted
+    def says(self, key: str) -> bool:
+        """Return whether the step is done for this key."""
+        return self.file.is_file() and self.file.read_text().strip() == key
 
     def begin(self) -> None:
         """Mark the step as not done."""
@@ -131,8 +131,8 @@ class SetUp:
 
         The packages of "dev" include those of "run".
         """
-        accepted = {"run", "dev"} if self.mode == "run" else {"dev"}
-        return PACKAGES.says(*(packages_key(mode) for mode in accepted))
+        accepted = ("run", "dev") if self.mode == "run" else ("dev",)
+        return any(PACKAGES.says(packages_key(mode)) for mode in accepted)
 
     def has_project(self) -> bool:
         """Return whether the project is installed from this folder, with its current metadata."""

@@ -9,7 +9,8 @@ ReembodyError                     a request was refused; has value, valid and re
 ├── Conflict              409     the request contradicts what is already recorded
 │   ├── RecordedConflict      409     the same, and the refused input is stored in the record
 │   ├── StaleVersion      409     the session has changed since the caller read it
-│   └── NotNow            409     not possible in the session's current step or status
+│   ├── NotNow            409     not possible in the session's current step or status
+│   └── TakenOver         409     a newer connection of the same headset has taken over
 ├── Gone                  410     a pairing code was used or has expired
 │   └── Withdrawn         410     the participant has withdrawn: no more of their data are stored
 ├── TooLarge              413     the request has more bytes than allowed
@@ -124,6 +125,12 @@ class NotNow(Conflict):
     """The request is not possible in the session's current step or status."""
 
     code = "not_now"
+
+
+class TakenOver(Conflict):
+    """A newer connection of the same headset has taken over, so this one is closed."""
+
+    code = "taken_over"
 
 
 class Gone(ReembodyError):

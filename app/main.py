@@ -22,6 +22,8 @@ from app.features.design.studies import add_shipped
 from app.features.movement.avatar import add_shipped_avatar
 from app.features.movement.captures import CaptureQueue
 from app.features.movement.humanoids import add_shipped_bodies
+from app.features.movement.live import LiveTracking
+from app.features.movement.tuning import TuningDesk, TuningQueue
 from app.features.movement.walking import FitQueue, PredictionQueue
 from app.features.people.accounts import RefusedSignIns, ensure_admin
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
@@ -53,6 +55,9 @@ PARTS: tuple[PartMaker, ...] = (
     lambda context: CaptureQueue().watched_by(context.background, "captures"),
     lambda context: PredictionQueue().watched_by(context.background, "walking"),
     FitQueue.of,
+    lambda context: TuningDesk().watched_by(context.background, "tuning-curves"),
+    TuningQueue.of,
+    LiveTracking,
     ExportQueue.of,
     StorageMeter.of,
     TryoutRunner.of,
@@ -133,8 +138,10 @@ def create_app(
     )
     app.state.context = context
     install_error_handler(app)
-    add_routes(app)
+    # Pages first: they are few, and need not wait for the routes of the interface, which are built
+    # when a request is first compared with them.
     install_pages(app, static_dir())
+    add_routes(app)
     app.add_middleware(
         Guards,
         admission=context.admission,

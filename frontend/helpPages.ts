@@ -18,6 +18,7 @@ import type { HelpHeading, HelpNode } from "./src/console/help/nodes.ts";
 const NOT_SHOWN: ReadonlySet<string> = new Set([
   "docs/architecture.md",
   "docs/benchmarks.md",
+  "docs/claims.md",
   "docs/decisions/README.md",
   "docs/faults.md",
   "docs/pages.md",

@@ -14,7 +14,13 @@ const repository = resolve(import.meta.dirname, "..");
 const pages = readdirSync(source).filter((name) => existsSync(resolve(source, name, "index.html")));
 
 /** Workers that run WebAssembly: the server gives their folder a policy that allows it. */
-const WASM = new Set(["codeWorker", "meshoptWorker", "textureWorker", "bodiesWorker"]);
+const WASM = new Set([
+  "codeWorker",
+  "meshoptWorker",
+  "textureWorker",
+  "bodiesWorker",
+  "tryoutWorker",
+]);
 
 /** Serve the console at `/` and the tablet at `/tablet`, as the server does. */
 function servePagesLikeTheServer(): Plugin {

@@ -36,7 +36,7 @@ WASM_WORKERS = "wasm/"
 WASM_POLICY = "default-src 'none'; script-src 'self' blob: 'wasm-unsafe-eval'"
 # The transcoder of KTX2 textures (Basis Universal) and MuJoCo's bindings also make functions from
 # text when they start. Their workers alone may do so; no page may.
-WORKERS_THAT_EVALUATE = ("wasm/textureWorker-", "wasm/bodiesWorker-")
+WORKERS_THAT_EVALUATE = ("wasm/textureWorker-", "wasm/bodiesWorker-", "wasm/tryoutWorker-")
 # In an isolated page, the headset shares memory with the worker that simulates the bodies. All that
 # such a page loads comes from this server, and its workers must be sent with the same policy.
 ISOLATED = {"/vr"}

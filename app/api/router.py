@@ -19,6 +19,8 @@ from app.features.movement.avatar.endpoints import router as avatars
 from app.features.movement.captures.avatar_endpoints import router as on_avatars
 from app.features.movement.captures.endpoints import router as captures
 from app.features.movement.humanoids.endpoints import router as humanoids
+from app.features.movement.live.endpoints import router as trackers
+from app.features.movement.tuning.endpoints import router as tunings
 from app.features.movement.walking.endpoints import router as walks
 from app.features.movement.walking.models.endpoints import router as walking_models
 from app.features.people.accounts.endpoints import router as accounts
@@ -35,6 +37,7 @@ from app.features.record.ledger.endpoints import router as participants
 from app.features.record.poses.endpoints import router as poses
 from app.features.record.preflight.endpoints import router as preflight
 from app.features.record.receipts.endpoints import router as receipts
+from app.features.record.self_tests.endpoints import router as self_tests
 from app.features.record.suggestions.endpoints import router as suggestions
 from app.features.record.tablet.endpoints import calls
 from app.features.record.tablet.endpoints import router as tablet
@@ -85,10 +88,18 @@ class ErrorBody(BaseModel):
     error: Refusal
 
 
+_ERROR_CONTENT = {"application/json": {"schema": {"$ref": "#/components/schemas/ErrorBody"}}}
 REFUSALS: dict[int | str, dict[str, Any]] = {
-    "4XX": {"model": ErrorBody, "description": "Refused, with the reason and the remedy."},
-    "503": {"model": ErrorBody, "description": "Cannot be stored now; nothing was stored."},
+    "4XX": {"description": "Refused, with the reason and the remedy.", "content": _ERROR_CONTENT},
+    "503": {
+        "description": "Cannot be stored now; nothing was stored.",
+        "content": _ERROR_CONTENT,
+    },
 }
+"""The errors of every route, which refer to the schema of `ErrorBody`.
+
+Naming the model here would build two validators for each of the routes at every start.
+"""
 
 
 def add_routes(app: FastAPI) -> None:
@@ -108,6 +119,7 @@ def _routes() -> tuple[BaseRoute, ...]:
         *(tablet, sessions, watching),
         *(accounts, people, audit, studies, instruments, participants),
         *(devices, calls, headset, headset_forms, alarms, suggestions, calibrations),
+        self_tests,
         *(analysis, exports, receipts, rights, network, captures, on_avatars, avatars),
         *(
             humanoids,
@@ -119,10 +131,12 @@ def _routes() -> tuple[BaseRoute, ...]:
             imports,
             preregistrations,
         ),
-        *(walks, walking_models),
+        *(walks, walking_models, tunings, trackers),
     )
     own = APIRouter()
-    own.add_api_route("/health", get_health, methods=["GET"], tags=["health"])
+    # The one route that names the model, so that the interface's description has its schema.
+    described: dict[int | str, dict[str, Any]] = {"4XX": {**REFUSALS["4XX"], "model": ErrorBody}}
+    own.add_api_route("/health", get_health, methods=["GET"], tags=["health"], responses=described)
     everything = APIRouter()
     for part in (*parts, own):
         everything.include_router(part, prefix=API_PREFIX, responses=REFUSALS)

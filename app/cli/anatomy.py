@@ -8,8 +8,18 @@ import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import get_args
 
-from app.science.avatar.body import AXES, COLLIDING, LAYER_OF, LAYERS, PARENT_OF, finger_bones
+from app.science.avatar.body import (
+    AXES,
+    COLLIDING,
+    LAYER_OF,
+    LAYERS,
+    PARENT_OF,
+    Population,
+    finger_bones,
+    mass_fractions,
+)
 from app.science.avatar.configuration import GROUPS, limits_of
 from app.science.rotations import FloatArray
 from app.science.skeleton import FINGER_PARTS, JOINT_NAMES, PARENTS, build_skeleton
@@ -57,6 +67,8 @@ def anatomy() -> str:
             _rows("COLLIDING", pairs),
             "/** The parts of each body group; every part is also a group of its own. */",
             _groups(),
+            "/** The share of each segment in the body's mass, of one side where it has two. */",
+            f"export const MASS_SHARES = {json.dumps(_mass_shares(), indent=2)} as const;\n",
             "/** The body of a person 1 m tall; every length grows with the stature. */",
             f"export const UNIT_SKELETON = {json.dumps(_unit_skeleton(), indent=2)} as const;\n",
         )
@@ -71,6 +83,10 @@ def _rows(name: str, rows: Sequence[object]) -> str:
 def _groups() -> str:
     lines = ",\n".join(f"  {name}: {json.dumps(parts)}" for name, parts in GROUPS.items())
     return f"export const GROUPS: Readonly<Record<string, readonly string[]>> = {{\n{lines},\n}};\n"
+
+
+def _mass_shares() -> dict[str, dict[str, float]]:
+    return {population: mass_fractions(population) for population in get_args(Population)}
 
 
 def _unit_skeleton() -> dict[str, object]:

@@ -10,11 +10,15 @@ import typer
 
 from app import __version__
 from app.cli.analyse.command import analyse
+from app.cli.avatar.command import avatar
+from app.cli.crossing.command import crossing
 from app.cli.errors import INCOMPLETE, reported, warn
 from app.cli.figure.command import figure
+from app.cli.pilot.command import pilot
 from app.cli.progress import Activity
 from app.cli.retarget.command import retarget
 from app.cli.serve.command import serve, tls
+from app.cli.tracking.command import tracking
 from app.cli.tune.command import tune
 from app.cli.walk.command import walk
 
@@ -25,6 +29,10 @@ app = typer.Typer(
 )
 app.add_typer(tls, name="tls")
 app.add_typer(walk, name="walk")
+app.add_typer(avatar, name="avatar")
+app.add_typer(pilot, name="pilot")
+app.add_typer(tracking, name="tracking")
+app.add_typer(crossing, name="crossing")
 app.command()(retarget)
 app.command()(figure)
 app.command()(tune)
@@ -53,13 +61,36 @@ def reembody(
 @app.command()
 def score(
     answers: Annotated[Path, typer.Argument(help="CSV with item columns; others are ids.")],
-    instrument: Annotated[str, typer.Option(help="Key of the instrument.")],
+    instrument: Annotated[str, typer.Option(help="Key of the instrument, or its file.")],
 ) -> None:
     """Score a table of answers; write ids and scores as CSV to standard output."""
     from app.cli.scoring import score_file
 
     with reported(ValueError, OSError):
-        sys.stdout.write(score_file(answers, instrument))
+        scored = score_file(answers, instrument)
+    sys.stdout.write(scored.text)
+    for note in scored.notes:
+        warn(note)
+
+
+@app.command()
+def instrument(
+    answers: Annotated[Path, typer.Argument(help="Table of answers of another tool, as CSV.")],
+    key: Annotated[str | None, typer.Option(help="Key of the offered instrument.")] = None,
+    title: Annotated[str | None, typer.Option(help="Its title.")] = None,
+    minimum: Annotated[int | None, typer.Option(help="Lowest answer of its scale.")] = None,
+    maximum: Annotated[int | None, typer.Option(help="Highest answer of its scale.")] = None,
+    language: Annotated[str, typer.Option(help="Language of its items.")] = "en",
+    out: Annotated[Path | None, typer.Option(help="Write the instrument's file.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Say what a table's columns are, and offer an instrument for answers that none asks."""
+    from app.cli.scoring import OfferOrder, offer_instrument, offer_text
+
+    order = OfferOrder(answers, key, title, minimum, maximum, language, out)
+    with reported(ValueError, OSError, with_valid=True):
+        found = offer_instrument(order)
+    print(json.dumps(found) if as_json else offer_text(found))
 
 
 @app.command()
@@ -90,7 +121,11 @@ def verify(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON.")] = False,
 ) -> None:
-    """Verify that a session or the audit trail is complete and unaltered; exit code 1 if not."""
+    """Verify that a session, or the audit trail and every version, are unaltered.
+
+    Versions are those of avatars, studies and instruments. The exit code is 1 if anything was
+    altered.
+    """
     with reported():
         from app.cli.record import heads_of, verify_record
 

@@ -8,6 +8,7 @@ that nothing was stored.
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from difflib import get_close_matches
 from pathlib import Path
 from typing import NoReturn
 
@@ -42,16 +43,14 @@ def require_folder_of(out: Path | None) -> None:
 def reported(*expected: type[Exception], with_valid: bool = False) -> Iterator[None]:
     """Exit with the message of a ReembodyError, of a database error, or of an `expected` error.
 
-    `with_valid` adds the valid values, if the error lists them. Any other error is a fault of the
-    program and keeps its traceback.
+    `with_valid` adds the valid values, and the one that was probably meant; the problems of which
+    an error consists are listed below it. Any other error is a fault of the program and keeps its
+    traceback.
     """
     try:
         yield
     except ReembodyError as error:
-        valid = ""
-        if with_valid and isinstance(error.valid, list):
-            valid = f"; valid: {', '.join(error.valid)}"
-        fail(as_sentences(f"{error.message}{valid}", error.remedy))
+        fail("\n".join([_sentence(error, with_valid=with_valid), *_details(error)]))
     except expected as error:
         fail(file_problem(error) if isinstance(error, OSError) else str(error))
     except Exception as error:
@@ -59,6 +58,24 @@ def reported(*expected: type[Exception], with_valid: bool = False) -> Iterator[N
         if refused is None:
             raise
         fail(as_sentences(refused.message, refused.remedy))
+
+
+def _sentence(error: ReembodyError, *, with_valid: bool) -> str:
+    valid, meant = "", ""
+    if with_valid and isinstance(error.valid, list):
+        words = [str(one) for one in error.valid]
+        valid = f"; valid: {', '.join(words)}"
+        close = get_close_matches(str(error.value), words, n=1)
+        meant = f"Did you mean {close[0]}?" if close else ""
+    elif with_valid and isinstance(error.valid, str):
+        valid = f"; valid: {error.valid}"
+    return as_sentences(f"{error.message}{valid}", meant, error.remedy)
+
+
+def _details(error: ReembodyError) -> Iterator[str]:
+    for one in error.details:
+        where, said = one.get("path", ""), one.get("message", "")
+        yield f"  {where}: {as_sentences(str(said), str(one.get('remedy') or ''))}"
 
 
 def _refused_by_storage(error: Exception) -> ReembodyError | None:

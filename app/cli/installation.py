@@ -8,7 +8,7 @@ from sqlalchemy import select
 from app.clock import Clock
 from app.database import Database, open_database
 from app.features.care.opening import prepare_database
-from app.features.care.ownership import own_data, prepared_beside_owner
+from app.features.care.ownership import prepared_beside_owner
 from app.models import Account
 from app.settings import read_settings
 
@@ -26,22 +26,6 @@ def opened_database(command: str) -> Iterator[Database]:
         prepare_database(settings, Clock())
 
     with prepared_beside_owner(settings, command, prepare):
-        database = open_database(settings.resolved_database_url)
-        try:
-            yield database
-        finally:
-            database.close()
-
-
-@contextmanager
-def owned_database(command: str) -> Iterator[Database]:
-    """Open the database for a `command` that changes what a running server relies on.
-
-    No other process may use the data meanwhile. Raises Owned if one does.
-    """
-    settings = read_settings()
-    with own_data(settings, command):
-        prepare_database(settings, Clock())
         database = open_database(settings.resolved_database_url)
         try:
             yield database

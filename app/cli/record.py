@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 from app.cli.errors import warn
 from app.cli.installation import opened_database
 from app.cli.progress import Activity
+from app.cli.stored_versions import verified_versions
 from app.clock import Clock
 from app.database import Database
 from app.errors import NotFound
@@ -116,8 +117,10 @@ def verify_record(
     """Verify a session, the audit trail or both; return the findings and whether all is well.
 
     The findings are text or JSON. The trail is verified if no session is named, or if there are
-    `heads`: each must still be in it. A server may run meanwhile. Raises ReembodyError for an
-    unknown session.
+    `heads`: each must still be in it. If no session is named, every version of an avatar, a study
+    and an instrument must also be readable and have the content that its hash was computed from;
+    what is unaltered but cannot be used is reported. A server may run meanwhile. Raises
+    ReembodyError for an unknown session.
     """
     parts: list[str] = []
     found: dict[str, Any] = {}
@@ -134,15 +137,20 @@ def verify_record(
             holds = holds and trail.holds
             parts.append(trail.text())
             found = {**found, "audit": trail.as_json()}
+        if session_id is None:
+            activity.now("verifying: reading the versions of avatars, studies and instruments")
+            for versions in verified_versions(db):
+                holds = holds and versions.holds
+                parts.append(versions.text())
+                found[versions.kind] = versions.as_json()
     return json.dumps(found, indent=2) if as_json else "\n\n".join(parts), holds
 
 
 def _receipt(db: Session, session_id: str) -> SessionReceipt:
-    """Return a session's receipt, without latencies while its condition is blinded."""
+    """Return a session's receipt, as blinded readers see it while its condition is hidden."""
     try:
-        receipt = receipt_of(db, session_id)
         study = db.get_one(Study, session_by_id(db, session_id).study_id)
-        return receipt.without_latencies() if session_id in hidden_sessions(db, study) else receipt
+        return receipt_of(db, session_id, blinded=session_id in hidden_sessions(db, study))
     except NotFound as error:
         raise NotFound(
             f"there is no session {session_id!r}",

@@ -11,9 +11,10 @@ from app.models.accounts import (
 )
 from app.models.avatars import Avatar, AvatarVersion, HumanoidRow
 from app.models.captures import CaptureContent, CapturePiece, CaptureRow, SavedJointMap
-from app.models.devices import Calibration, Device, PairingCode
+from app.models.devices import Calibration, Device, HeadsetTest, HeadsetTestBatch, PairingCode
 from app.models.imports import AnswerImport, ImportedForm
 from app.models.ledger import KINDS, Ledger, LedgerSlot, Participant, SlotAttempt
+from app.models.live import LiveDoor, LiveLimb
 from app.models.quality import AlarmRow, PhaseLatency, PhaseQuality
 from app.models.questionnaires import Answer, ScoreValue, Submission
 from app.models.rights import AnswerCorrection, CopyMade, Erasure
@@ -30,6 +31,7 @@ from app.models.telemetry import (
     TelemetryChunk,
     TelemetryStream,
 )
+from app.models.tuning import AvatarTuningRow
 from app.models.types import UtcDateTime, new_id
 from app.models.walking import WalkingModelRow, WalkingScene, WalkSetRow
 
@@ -44,6 +46,7 @@ __all__ = [
     "AuditEntry",
     "AuditHead",
     "Avatar",
+    "AvatarTuningRow",
     "AvatarVersion",
     "Calibration",
     "CaptureContent",
@@ -56,6 +59,8 @@ __all__ = [
     "CopyMade",
     "Device",
     "Erasure",
+    "HeadsetTest",
+    "HeadsetTestBatch",
     "HumanoidRow",
     "ImportedForm",
     "InstrumentVersion",
@@ -64,6 +69,8 @@ __all__ = [
     "JointErrorRow",
     "Ledger",
     "LedgerSlot",
+    "LiveDoor",
+    "LiveLimb",
     "LoginToken",
     "PairingCode",
     "Participant",

@@ -1,8 +1,18 @@
-"""Tables of the equipment: paired tablets and headsets, and calibrations of its latency."""
+"""Tables of the equipment: paired tablets and headsets, its latency, and headsets' self-tests."""
 
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import CheckConstraint, ForeignKey, Index, String, text
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    CheckConstraint,
+    ForeignKey,
+    Index,
+    LargeBinary,
+    String,
+    text,
+)
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.database import Base
@@ -74,3 +84,38 @@ class Calibration(Base):
     retired_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
     retired_by: Mapped[str | None] = mapped_column(String(100))
     retired_reason: Mapped[str | None] = mapped_column(String(2000))
+
+
+class HeadsetTest(Base):
+    """A self-test of a headset: the figures that it measured, and the verdicts about them.
+
+    Appended, never edited. It is about the equipment and names no session. `id` was chosen by the
+    headset, `started_at` is by its clock. `status` is the worst of the verdicts, and `worn` tells
+    whether it was shown in a headset and moved by a person.
+    """
+
+    __tablename__ = "headset_tests"
+    __table_args__ = (CheckConstraint("status IN ('ok', 'warn', 'fail')", name="status"),)
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    started_at: Mapped[UtcTime] = mapped_column(index=True)
+    received_at: Mapped[UtcTime]
+    status: Mapped[str] = mapped_column(String(10))
+    worn: Mapped[bool]
+    report: Mapped[dict[str, Any]] = mapped_column(JSON)
+    verdicts: Mapped[list[dict[str, Any]]] = mapped_column(JSON)
+
+
+class HeadsetTestBatch(Base):
+    """A batch that a headset sends to measure the way to the disk, kept until its next commit.
+
+    `trial_id` is random, one for each socket.
+    """
+
+    __tablename__ = "headset_test_batches"
+
+    trial_id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    stream: Mapped[str] = mapped_column(String(20), primary_key=True)
+    seq_first: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
+    received_at: Mapped[UtcTime]
+    message: Mapped[bytes] = mapped_column(LargeBinary)

@@ -23,7 +23,9 @@ class TelemetryStream(Base):
 
     `produced` is the next seq that the client has reported: what lies between is still in its
     journal, or was lost with it. `phase_id` and `active_s` are those of the newest stored frame:
-    after a crash they show how much active time is certain.
+    after a crash they show how much active time is certain. `abilities`: what the client run said
+    that it can do, on its stream of reports; None on all others, and for runs that were recorded
+    before it was stored.
     """
 
     __tablename__ = "telemetry_streams"
@@ -39,6 +41,7 @@ class TelemetryStream(Base):
     active_s: Mapped[float] = mapped_column(default=0.0)
     first_at: Mapped[UtcTime]
     last_at: Mapped[UtcTime]
+    abilities: Mapped[list[str] | None] = mapped_column(JSON(none_as_null=True))
 
 
 class TelemetryBatch(Base):

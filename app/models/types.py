@@ -42,6 +42,13 @@ class UtcDateTime(TypeDecorator[datetime]):
             return process
 
         def checked(value: Any) -> datetime | None:
+            if value is None:
+                return None
+            try:
+                # Lists contain thousands of times, nearly all as they are stored here, in UTC.
+                return datetime.fromisoformat(value + "+00:00")
+            except (ValueError, TypeError):
+                pass
             try:
                 return process(value)
             except (ValueError, TypeError) as error:

@@ -1,13 +1,17 @@
 """Describe problems of study and instrument files, and detect stored ones that were damaged."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Literal, TypeVar
 
 from pydantic import BaseModel
 
 from app.errors import InvalidConfig, NotDurable
 from app.platform.trouble import DAMAGED
 from app.protocol import ConfigError, sha256_of
+
+Parsed = TypeVar("Parsed")
 
 
 class ProblemView(BaseModel):
@@ -44,6 +48,12 @@ def invalid_config(what: str, error: ConfigError) -> InvalidConfig:
     )
 
 
+def require_sound(stored: str, content_hash: str) -> None:
+    """Raise NotDurable if a stored text does not have its hash, because it was damaged."""
+    if sha256_of(stored) != content_hash:
+        raise _damaged()
+
+
 @contextmanager
 def unpacking(stored: str, content_hash: str) -> Iterator[None]:
     """Raise NotDurable if parsing a stored text fails because the text was damaged.
@@ -55,4 +65,54 @@ def unpacking(stored: str, content_hash: str) -> Iterator[None]:
     except Exception as error:
         if sha256_of(stored) == content_hash:
             raise
-        raise NotDurable(f"{DAMAGED.message}: nothing was stored", remedy=DAMAGED.remedy) from error
+        raise _damaged() from error
+
+
+FaultKind = Literal["damaged", "unreadable", "incomplete"]
+
+
+@dataclass(frozen=True)
+class StoredFault:
+    """What is wrong with a stored version of a study, an instrument or an avatar.
+
+    `kind`: `damaged`, its content does not have its hash; `unreadable`, this release cannot read
+    it; `incomplete`, it can be read, but nothing can use it. `version` is None if only the content,
+    which cannot be read, says which one it is.
+    """
+
+    key: str
+    version: int | None
+    kind: FaultKind
+    problem: str
+    remedy: str
+
+
+def stored_fault(
+    key: str,
+    version: int | None,
+    stored: tuple[str, str],
+    parse: Callable[[str], Parsed],
+    problems: Callable[[Parsed], Iterable[str]] = lambda _: (),
+) -> StoredFault | None:
+    """Return what is wrong with a stored content and its hash; None if nothing is.
+
+    `parse` raises ValueError for a content that cannot be read; `problems` yields why what was read
+    cannot be used.
+    """
+    content, content_hash = stored
+    if sha256_of(content) != content_hash:
+        return StoredFault(key, version, "damaged", "its content was changed", DAMAGED.remedy)
+    try:
+        parsed = parse(content)
+    except ValueError as error:
+        reason = str(error).strip().partition("\n")[0]
+        remedy = "Use the release of Reembody that stored it, and report this."
+        return StoredFault(key, version, "unreadable", reason, remedy)
+    for problem in problems(parsed):
+        remedy = "Studies cannot use it; save a version in which this is corrected."
+        return StoredFault(key, version, "incomplete", problem, remedy)
+    return None
+
+
+def _damaged() -> NotDurable:
+    return NotDurable(f"{DAMAGED.message}: nothing was stored", remedy=DAMAGED.remedy)

@@ -37,18 +37,18 @@ class JobMessages:
     Attributes:
         busy: why no more jobs may wait.
         cannot: what failed, followed by the reason.
-        ended: the reason if the process ended.
         less: the remedy if the job was too large for the process.
-        otherwise: the remedy for an unexpected error.
         log: the log message for an unexpected error.
+        ended: the reason if the process ended.
+        otherwise: the remedy for an unexpected error.
     """
 
     busy: str
     cannot: str
-    ended: str
     less: str
-    otherwise: str
     log: str
+    ended: str = "the process that computed it ended"
+    otherwise: str = "See the server's log for details."
 
 
 @dataclass
@@ -56,6 +56,8 @@ class JobQueue(Part, ABC):
     """Runs jobs one after the other in a worker process; `within_s` is the time limit of each."""
 
     messages: ClassVar[JobMessages]
+    max_cached: ClassVar[int] = 64
+    """Maximum number of cached results."""
     memory_errors: ClassVar[tuple[type[Exception], ...]] = ()
     """Errors after which the process may not have freed its memory: it is restarted."""
 
@@ -105,9 +107,9 @@ class JobQueue(Part, ABC):
         """End the worker process."""
         self._worker.end()
 
-    @abstractmethod
     def _cache_is_full(self) -> bool:
         """Return whether the oldest cached result has to be evicted."""
+        return len(self._cache) > self.max_cached
 
     @abstractmethod
     def _refusal(self, error: Exception) -> InvalidInput | None:

@@ -70,6 +70,8 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/calibrations": LAB,
     "POST /api/calibrations": DESIGNERS,
     "POST /api/calibrations/{calibration_id}/retire": DESIGNERS,
+    # Self-tests of headsets: about the equipment, of no session.
+    "GET /api/headset-tests": LAB,
     # Instruments contain nothing confidential of a study.
     "GET /api/instruments": LAB,
     "GET /api/instruments/{key}": LAB,
@@ -87,6 +89,7 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/captures/{capture_id}/joint-map": LAB,
     "PUT /api/captures/{capture_id}/joint-map": DESIGNERS,
     "DELETE /api/captures/{capture_id}/joint-map": DESIGNERS,
+    "GET /api/captures/generated/verification": LAB,
     "GET /api/captures/{capture_id}/verification": LAB,
     "GET /api/captures/{capture_id}/retargeted": LAB,
     "GET /api/captures/{capture_id}/retargeted-motion": LAB,
@@ -94,10 +97,13 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/avatars": LAB,
     "POST /api/avatars": DESIGNERS,
     "POST /api/avatars/check": DESIGNERS,
+    "POST /api/avatars/edit": DESIGNERS,
+    "POST /api/avatars/model": LAB,
     "GET /api/avatars/{key}": LAB,
     "GET /api/avatars/{key}/model": LAB,
     "POST /api/avatars/{key}/versions": DESIGNERS,
     "GET /api/avatars/{key}/versions/{number}": LAB,
+    "GET /api/avatars/{key}/versions/{number}/difference/{other}": LAB,
     "GET /api/avatars/{key}/versions/{number}/file": LAB,
     # Bodies: humanoid models that participants wear.
     "GET /api/humanoids": LAB,
@@ -108,7 +114,21 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/humanoids/{content_hash}/measure": DESIGNERS,
     "GET /api/humanoids/{content_hash}/use": LAB,
     "GET /api/humanoids/{content_hash}/file": LAB,
+    # Tracking software that sends through the doors of this server.
+    "GET /api/trackers": LAB,
+    "PUT /api/trackers/doors/{door}": DESIGNERS,
+    "PUT /api/trackers/limbs": RUNNERS,
     # Walking: scenes, walks, and the models that are fitted to them.
+    "GET /api/avatar-tunings": LAB,
+    "POST /api/avatar-tunings": DESIGNERS,
+    "GET /api/avatar-tunings/{tuning_id}": LAB,
+    "DELETE /api/avatar-tunings/{tuning_id}": DESIGNERS,
+    "POST /api/avatar-tunings/{tuning_id}/stop": DESIGNERS,
+    "POST /api/avatar-tunings/{tuning_id}/resume": DESIGNERS,
+    "GET /api/avatar-tunings/{tuning_id}/axes/{axis}": LAB,
+    "POST /api/avatar-tunings/{tuning_id}/configuration": LAB,
+    "POST /api/avatar-tunings/{tuning_id}/comparison": LAB,
+    "POST /api/avatar-tunings/{tuning_id}/save": DESIGNERS,
     "GET /api/walking/scenes": LAB,
     "POST /api/walking/scenes": DESIGNERS,
     "GET /api/walking/scenes/{scene_key}": LAB,
@@ -146,6 +166,7 @@ POLICY: dict[str, frozenset[str]] = {
     # Answers that were collected elsewhere.
     "POST /api/studies/{key}/imports/look": DESIGNERS,
     "POST /api/studies/{key}/imports/check": DESIGNERS,
+    "POST /api/studies/{key}/imports/instrument": DESIGNERS,
     "POST /api/studies/{key}/imports": DESIGNERS,
     "POST /api/studies/{key}/imports/erase": DESIGNERS,
     "POST /api/studies/{key}/imports/{import_id}/undo": DESIGNERS,
@@ -198,6 +219,9 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/vr/submissions": HEADSET,
     "POST /api/vr/acknowledge": HEADSET,
     "PUT /api/vr/language": HEADSET,
+    "GET /api/vr/self-tests/avatar": HEADSET,
+    "POST /api/vr/self-tests": HEADSET,
+    "WEBSOCKET /api/vr/self-tests/storage": HEADSET,
     "WEBSOCKET /api/vr/stream": HEADSET,
 }
 

@@ -95,7 +95,7 @@ class Worker:
 
 
 def _begin(prepare: Callable[[], None] | None) -> None:
-    threading.Thread(target=_end_with_the_server, daemon=True).start()
+    end_with_parent()
     # Ctrl-C reaches every process of a terminal, but the server decides when this one ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(os, "nice"):
@@ -105,9 +105,13 @@ def _begin(prepare: Callable[[], None] | None) -> None:
         prepare()
 
 
-def _end_with_the_server() -> None:
-    """Exit as soon as the server has ended: a killed server cannot end its processes."""
-    server = multiprocessing.parent_process()
-    if server is not None:
-        server.join()
+def end_with_parent() -> None:
+    """Exit as soon as the parent process has ended: if killed, it cannot end its processes."""
+    threading.Thread(target=_exit_after_parent, daemon=True).start()
+
+
+def _exit_after_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
         os._exit(1)

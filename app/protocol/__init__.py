@@ -1,5 +1,6 @@
 """Study and instrument files: strict parsing, frozen values, content hashes, plans and orders."""
 
+from app.protocol.assumptions import Answering, Assumptions, Performance, declared_analysis
 from app.protocol.avatar_changes import (
     MAX_FACTOR,
     AvatarChanges,
@@ -24,23 +25,25 @@ from app.protocol.durations import (
     visit_time,
 )
 from app.protocol.errors import ConfigError, ConfigProblem, PlanError
-from app.protocol.explanations import explain
+from app.protocol.explanations import did_you_mean, explain
 from app.protocol.loading import (
+    LoadedAssumptions,
     LoadedInstrument,
     LoadedStudy,
     instrument_as_json,
+    load_assumptions,
     load_instrument,
     load_study,
     parse_instrument_json,
     parse_study_json,
     study_schema,
 )
-from app.protocol.orders import LedgerRow, ledger_block, sequences
+from app.protocol.orders import LedgerRow, imbalances, ledger_block, sequences
 from app.protocol.plan import Step, compile_plan
 from app.protocol.preregistration import ExclusionRule, Preregistration, PrimaryTest
 from app.protocol.procedure import ConsentStep, FormPlace
 from app.protocol.safety import StopRule
-from app.protocol.source import Path, Plain, Source, path_text, read_source
+from app.protocol.source import MAX_FILE_BYTES, Path, Plain, Source, path_text, read_source
 from app.protocol.step_kinds import (
     BOX_KINDS,
     COUNTED_KINDS,
@@ -66,12 +69,15 @@ __all__ = [
     "FORM_KINDS",
     "ITEM_S",
     "MAX_FACTOR",
+    "MAX_FILE_BYTES",
     "OPENING_S",
     "PHASES",
     "READING_WORDS_PER_S",
     "STEP_KINDS",
     "TIMED_KINDS",
     "UNCOUNTED_KINDS",
+    "Answering",
+    "Assumptions",
     "AvatarChanges",
     "BodyName",
     "Condition",
@@ -82,9 +88,11 @@ __all__ = [
     "FormPlace",
     "LatencyRule",
     "LedgerRow",
+    "LoadedAssumptions",
     "LoadedInstrument",
     "LoadedStudy",
     "Path",
+    "Performance",
     "Plain",
     "PlanError",
     "Preregistration",
@@ -103,13 +111,17 @@ __all__ = [
     "canonical_json",
     "change_problems",
     "compile_plan",
+    "declared_analysis",
+    "did_you_mean",
     "differences",
     "driven_axes_of",
     "explain",
     "form_s",
+    "imbalances",
     "instrument_as_json",
     "kinds_with_command",
     "ledger_block",
+    "load_assumptions",
     "load_instrument",
     "load_study",
     "parse_instrument_json",

@@ -202,10 +202,10 @@ def _changed(
         for axis in driven_axes_of(configuration, cast.group):
             angle_deg = cast.held_deg.get(axis)
             held[axis] = None if angle_deg is None else radians(angle_deg)
-    axes = dict(settings.axes)
+    axes, configured = dict(settings.axes), configuration.motors
     for gain in changes.gains:
         for axis in driven_axes_of(configuration, gain.motors):
-            axes[axis] = _with_gains(configuration.axes[axis], axes[axis], gain)
+            axes[axis] = _with_gains(configured[axis], axes[axis], gain)
     return RunningSettings(
         gravity=settings.gravity if changes.gravity is None else changes.gravity,
         self_collision=(

@@ -8,7 +8,7 @@ named bodies and pictures exist.
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from pydantic import ValidationError
 
@@ -16,13 +16,14 @@ from app.protocol.avatar_changes import AvatarChanges, change_problems
 from app.protocol.common import TEXT_MARK
 from app.protocol.conditions import MAX_PERMUTED
 from app.protocol.preregistration import preregistration_problems
-from app.protocol.safety import body_problems, safety_problems
+from app.protocol.safety import asked_instruments, body_problems, safety_problems
 from app.protocol.schema import Schema, marked_places
+from app.protocol.simulation import simulation_problems
 from app.protocol.source import Path, Plain
 from app.protocol.study import SCREEN_TEXTS
 from app.protocol.validity import validity_problems
 from app.protocol.wording import mark_problems
-from app.science.avatar.configuration import Configuration
+from app.science.avatar.configuration import Configuration, missing_part_problems
 from app.science.instruments import DefinitionProblem, Instrument, text_problems
 from app.texts import LANGUAGES
 
@@ -42,7 +43,7 @@ def cross_problems(
     schema: Schema,
     instruments: Mapping[str, Instrument],
     avatars: Mapping[str, int] | None = None,
-    bodies: Collection[str] | None = None,
+    bodies: Mapping[str, str] | None = None,
     configured: ConfigurationOf | None = None,
 ) -> Iterator[DefinitionProblem]:
     """Yield every problem between two places of a study file, or between it and the lab's data."""
@@ -57,10 +58,13 @@ def cross_problems(
     yield from _rows(tree)
     yield from _sequences(tree)
     yield from safety_problems(tree, instruments)
+    yield from simulation_problems(tree, instruments, asked_instruments(tree))
     yield from body_problems(tree)
     yield from validity_problems(tree)
     yield from avatar_problems(tree, avatars)
     yield from worn_body_problems(tree, bodies)
+    yield from same_body_problems(tree, bodies, configured)
+    yield from incomplete_avatar_problems(tree, configured)
     yield from changed_avatar_problems(tree, configured)
     yield from preregistration_problems(tree, instruments)
 
@@ -300,6 +304,32 @@ def _unknown_avatar(
         )
 
 
+def incomplete_avatar_problems(
+    tree: dict[str, Plain], configured: ConfigurationOf | None
+) -> Iterator[DefinitionProblem]:
+    """Yield a problem if the named avatar lacks parts that the tasks and the headset need.
+
+    Earlier releases stored such avatars.
+
+    Args:
+        tree: the tree of the study file.
+        configured: the configurations of avatars; None if they are unknown.
+    """
+    configuration = _configuration_of(tree, configured)
+    if configuration is None:
+        return
+    named = _dict(tree.get(_AVATAR_KEY))
+    for one in missing_part_problems(configuration):
+        yield DefinitionProblem(
+            (*_AVATAR_AT, "version"),
+            f"Version {named['version']} of the avatar {named['key']!r} cannot be used: "
+            f"{one.message}",
+            named["version"],
+            one.valid,
+            "Name another version, or save one in which these parts have all their axes.",
+        )
+
+
 def changed_avatar_problems(
     tree: dict[str, Plain], configured: ConfigurationOf | None
 ) -> Iterator[DefinitionProblem]:
@@ -354,13 +384,13 @@ def _parts_of_path(path: str) -> Path:
 
 
 def worn_body_problems(
-    tree: Mapping[str, Plain], bodies: Collection[str] | None
+    tree: Mapping[str, Plain], bodies: Mapping[str, str] | None
 ) -> Iterator[DefinitionProblem]:
     """Yield a problem for each condition whose body does not exist or would not be worn.
 
     Args:
         tree: the tree of the study file.
-        bodies: the names of all bodies; None if unknown.
+        bodies: the hash of each body's model, by name; None if unknown.
     """
     for index, condition in enumerate(_list(tree.get("conditions"))):
         name = _dict(condition).get("body")
@@ -383,6 +413,45 @@ def worn_body_problems(
                 name,
                 sorted(bodies),
                 f"Name it on the page Bodies, or use one of: {names}.",
+            )
+
+
+def _number(value: Plain) -> float | None:
+    return float(value) if isinstance(value, int | float) else None
+
+
+def same_body_problems(
+    tree: dict[str, Plain],
+    bodies: Mapping[str, str] | None,
+    configured: ConfigurationOf | None,
+) -> Iterator[DefinitionProblem]:
+    """Yield a problem for each condition that names the body which another one wears unnamed.
+
+    A condition without a body wears that of the avatar configuration, so both are one condition.
+
+    Args:
+        tree: the tree of the study file.
+        bodies: the hash of each body's model, by name; None if unknown.
+        configured: the configurations of avatars; None if they are unknown.
+    """
+    configuration = _configuration_of(tree, configured)
+    if bodies is None or configuration is None or configuration.humanoid is None:
+        return
+    conditions = [_dict(one) for one in _list(tree.get("conditions"))]
+    unnamed = {_number(one.get("latency_ms")) for one in conditions if one.get("body") is None}
+    for index, condition in enumerate(conditions):
+        name, latency_ms = condition.get("body"), _number(condition.get("latency_ms"))
+        if not isinstance(name, str) or bodies.get(name) != configuration.humanoid:
+            continue
+        if latency_ms is not None and latency_ms in unnamed:
+            yield DefinitionProblem(
+                ("conditions", index, "body"),
+                f"{name!r} is the body of the avatar configuration, which another condition with "
+                f"{latency_ms:g} ms wears because it names none, so no analysis can tell them "
+                "apart.",
+                name,
+                "a different latency or a different body for each condition",
+                "Change or remove one of them, or give them different bodies.",
             )
 
 

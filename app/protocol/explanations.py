@@ -1,7 +1,7 @@
 """Convert pydantic's errors to problems that a person can correct, each with its place."""
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sized
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -60,6 +60,22 @@ def locate(problem: DefinitionProblem, source: Source, *, at_key: bool = False) 
     )  # fmt: skip
 
 
+def did_you_mean(given: object, valid: Iterable[str]) -> str:
+    """Return the question for the valid word that is most like a given one; empty if none is.
+
+    Like it are words that differ in a few letters, and those that begin with it.
+    """
+    words, typed = list(valid), str(given)
+    close = difflib.get_close_matches(typed, words, n=1) or [
+        word for word in words if typed and word.startswith(typed)
+    ]
+    return f"Did you mean {close[0]!r}? " if close and close[0] != typed else ""
+
+
+def _words(valid: object) -> list[str]:
+    return [one for one in valid if isinstance(one, str)] if isinstance(valid, list) else []
+
+
 def _shown(value: object) -> object:
     """Shorten a value for a message: whole sections are left out, long texts cut."""
     if isinstance(value, dict) or (isinstance(value, list) and len(str(value)) > _MAX_SHOWN):
@@ -76,7 +92,8 @@ def _finding(details: ErrorDetails, path: Path, schema: Schema, tree: Plain) -> 
     if kind == "refused":
         value = given if context["value"] is None else context["value"]
         inner = (*path, *context["at"])
-        return DefinitionProblem(inner, context["said"], value, context["valid"], context["remedy"])
+        remedy = f"{did_you_mean(value, _words(context['valid']))}{context['remedy']}"
+        return DefinitionProblem(inner, context["said"], value, context["valid"], remedy)
     if kind in _EXPECTED:
         expected, remedy = _EXPECTED[kind]
         return DefinitionProblem(
@@ -104,9 +121,7 @@ def _missing(path: Path, schema: Schema) -> DefinitionProblem:
 
 def _unknown_key(path: Path, given: object, schema: Schema) -> DefinitionProblem:
     valid = sorted(schema.get("properties", {}))
-    close = difflib.get_close_matches(str(path[-1]), valid, n=1)
-    remedy = f"Did you mean {close[0]!r}? " if close else ""
-    remedy += f"Valid keys here: {', '.join(valid)}."
+    remedy = f"{did_you_mean(path[-1], valid)}Valid keys here: {', '.join(valid)}."
     return DefinitionProblem(path, f"The key {path[-1]!r} is not valid here.", given, valid, remedy)
 
 
@@ -117,12 +132,10 @@ def _wrong_tag(
     steps = schema_at(schema, tree, path[:-1]).get("items", {})
     valid = sorted(steps.get("discriminator", {}).get("mapping", {}))
     value = given.get(tag) if isinstance(given, dict) else given
-    close = difflib.get_close_matches(str(value), valid, n=1)
-    remedy = f"Did you mean {close[0]!r}? " if close else ""
     message = (
         f"{tag} is {value!r}, which is not valid." if value else f"The key {tag!r} is missing."
     )
-    remedy += f"Valid: {', '.join(valid)}."
+    remedy = f"{did_you_mean(value, valid)}Valid: {', '.join(valid)}."
     return DefinitionProblem((*path, tag), message, value, valid, remedy)
 
 
@@ -137,7 +150,9 @@ def _other(path: Path, details: ErrorDetails, schema: Schema) -> DefinitionProbl
     if details["type"] in ("too_short", "too_long"):
         limits = (("at least", context.get("min_length")), ("at most", context.get("max_length")))
         valid = " and ".join(f"{words} {limit}" for words, limit in limits if limit is not None)
-        message = f"There are {context['actual_length']} entries."
+        # Pydantic counts what is too long only where it has a length without being read to its end.
+        count = context.get("actual_length") or (len(given) if isinstance(given, Sized) else None)
+        message = "There are too many entries." if count is None else f"There are {count} entries."
         remedy = f"Give {valid}."
     elif isinstance(given, str):
         message = f"{given[:80]!r} is not valid here."

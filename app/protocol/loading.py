@@ -7,13 +7,15 @@ even if a later release changes a default.
 
 import copy
 import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Generic, TypeVar, cast
 
 from pydantic import TypeAdapter, ValidationError
 
+from app.plain_titles import not_plain
+from app.protocol.assumptions import Assumptions, assumption_problems
 from app.protocol.common import canonical_json, sha256_of
 from app.protocol.cross import ConfigurationOf, cross_problems
 from app.protocol.errors import ConfigError, ConfigProblem
@@ -22,7 +24,7 @@ from app.protocol.schema import Schema
 from app.protocol.source import Plain, Source, read_source
 from app.protocol.study import StudyProtocol
 from app.protocol.wording import with_avatar_lines
-from app.science.instruments import Instrument
+from app.science.instruments import DefinitionProblem, Instrument
 
 _Value = TypeVar("_Value")
 
@@ -49,12 +51,20 @@ class LoadedInstrument:
     canonical_json: str
 
 
+@dataclass(frozen=True)
+class LoadedAssumptions:
+    """The assumptions of a simulation with the SHA-256 of their content."""
+
+    assumptions: Assumptions
+    content_hash: str
+
+
 def load_study(
     text: str,
     *,
     instruments: Mapping[str, Instrument],
     avatars: Mapping[str, int] | None = None,
-    bodies: Collection[str] | None = None,
+    bodies: Mapping[str, str] | None = None,
     configured: ConfigurationOf | None = None,
 ) -> LoadedStudy:
     """Load a study file (YAML).
@@ -64,7 +74,8 @@ def load_study(
         instruments: those that it may refer to, by key.
         avatars: those that it may refer to: key -> number of the newest version. None skips the
             check.
-        bodies: names of bodies that its conditions may refer to. None skips the check.
+        bodies: bodies that its conditions may refer to: name -> hash of the model. None skips the
+            check.
         configured: returns the configuration of an avatar's key and version, to check changes to
             the avatar; None skips this.
 
@@ -94,9 +105,37 @@ def load_instrument(text: str) -> LoadedInstrument:
 
     Results are cached by text: whenever a study is loaded, so are its instruments.
     """
-    instrument = _validated(_INSTRUMENT, read_source(text), [])
+    source = read_source(text)
+    found = [locate(one, source) for one in _titles_that_are_not_plain(source.tree)]
+    instrument = _validated(_INSTRUMENT, source, found)
     canonical = canonical_json(instrument_as_json(instrument))
     return LoadedInstrument(instrument, sha256_of(canonical), canonical)
+
+
+def load_assumptions(
+    text: str, study: StudyProtocol, instruments: Mapping[str, Instrument]
+) -> LoadedAssumptions:
+    """Load what a simulation of a study assumes (YAML); raise ConfigError with every problem."""
+    source = read_source(text)
+    given = _validated(_ASSUMPTIONS, source, [])
+    between = assumption_problems(given, study, instruments)
+    if problems := [locate(one, source) for one in between]:
+        raise ConfigError(problems)
+    canonical = canonical_json(given.model_dump(mode="json"))
+    return LoadedAssumptions(given, sha256_of(canonical))
+
+
+def _titles_that_are_not_plain(tree: Plain) -> Iterator[DefinitionProblem]:
+    # Only of files: an instrument that was stored before stays readable.
+    title = tree.get("title") if isinstance(tree, dict) else None
+    for language, text in title.items() if isinstance(title, dict) else ():
+        if isinstance(text, str) and (problem := not_plain(text)) is not None:
+            yield DefinitionProblem(
+                ("title", language),
+                f"The title ({language}) is not plain text. {problem}",
+                text,
+                remedy="Remove the character, or type the title again.",
+            )
 
 
 def study_schema() -> Schema:
@@ -150,6 +189,7 @@ class _Kind(Generic[_Value]):
 
 _STUDY = _Kind(TypeAdapter(StudyProtocol))
 _INSTRUMENT = _Kind(TypeAdapter(Instrument))
+_ASSUMPTIONS = _Kind(TypeAdapter(Assumptions))
 
 
 def _validated(kind: _Kind[_Value], source: Source, found: list[ConfigProblem]) -> _Value:

@@ -5,9 +5,12 @@ condition is equally often at each position, and each ordered pair of neighbours
 often. The balance of an explicit list is up to its author. A *block* of the ledger contains every
 order once; its rows are shuffled, so that nobody can predict the next order. Blocks are drawn
 independently from the study's seed: adding one never changes existing ones.
+
+Balance is meant as by Williams 1949, Aust. J. Sci. Res. A 2:149.
 """
 
-from itertools import permutations
+from collections import Counter
+from itertools import pairwise, permutations, product
 from typing import NamedTuple
 
 import numpy as np
@@ -51,3 +54,35 @@ def ledger_block(protocol: StudyProtocol, block_index: int) -> tuple[LedgerRow, 
     seeds = np.random.SeedSequence([protocol.orders.seed, block_index])
     rng = np.random.Generator(np.random.PCG64(seeds))
     return tuple(LedgerRow(orders[at], block_index + 1) for at in rng.permutation(len(orders)))
+
+
+def position_counts(orders: tuple[Sequence, ...]) -> dict[str, tuple[int, ...]]:
+    """Return for each condition how often it is first, second, and so on."""
+    counts = Counter((key, at) for order in orders for at, key in enumerate(order))
+    places = range(len(orders[0]))
+    return {key: tuple(counts[key, at] for at in places) for key in sorted(orders[0])}
+
+
+def neighbour_counts(orders: tuple[Sequence, ...]) -> dict[tuple[str, str], int]:
+    """Return how often each condition (second) directly follows each other one (first)."""
+    counts = Counter(pair for order in orders for pair in pairwise(order))
+    keys = sorted(orders[0])
+    return {pair: counts[pair] for pair in product(keys, keys) if pair[0] != pair[1]}
+
+
+def imbalances(orders: tuple[Sequence, ...]) -> list[str]:
+    """Return what is not balanced, as sentences; nothing for balanced orders."""
+    found = []
+    uneven = {key: one for key, one in position_counts(orders).items() if len(set(one)) > 1}
+    if uneven:
+        key, counts = max(uneven.items(), key=lambda one: max(one[1]) - min(one[1]))
+        each = ", ".join(str(count) for count in counts)
+        found.append(f"{key} is at positions 1 to {len(counts)} {each} times")
+    pairs = neighbour_counts(orders)
+    if len(set(pairs.values())) > 1:
+        most, least = max(pairs, key=lambda one: pairs[one]), min(pairs, key=lambda one: pairs[one])
+        found.append(
+            f"{most[1]} follows {most[0]} {pairs[most]} times, {least[1]} follows {least[0]} "
+            f"{pairs[least]} times"
+        )
+    return found

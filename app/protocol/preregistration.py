@@ -12,7 +12,10 @@ from pydantic import Field, StringConstraints, model_validator
 from app.protocol.common import Key, Strict, refusal
 from app.protocol.source import Path, Plain
 from app.science.instruments import DefinitionProblem, Instrument
-from app.science.statistical_tests import TESTS, Direction, statistical_test
+from app.science.statistical_tests import TESTS, Direction, Outcome, Sample, statistical_test
+
+if TYPE_CHECKING:
+    from app.science.statistics import FloatArray
 
 Measure = Literal["score", "contact_time", "completions"]
 RuleName = Literal[
@@ -154,6 +157,31 @@ class Preregistration(Strict):
     primary: PrimaryTest
     exclusions: Annotated[tuple[ExclusionRule, ...], Field(max_length=20)] = ()
     registration: Annotated[str, StringConstraints(max_length=300)] = ""
+
+    def outcome_of(self, values: "FloatArray", levels: tuple[str, ...]) -> Outcome:
+        """Run the declared test; people's data and simulated ones are tested alike.
+
+        Args:
+            values: (n participants, k conditions) complete values of the declared measure.
+            levels: keys of the conditions, by ascending added latency.
+
+        Raises:
+            StatisticsError: the values do not allow the test.
+        """
+        primary = self.primary
+        sample = Sample(
+            values=values,
+            levels=levels,
+            direction=primary.direction,
+            reference=primary.reference,
+            holm=primary.correction == "holm",
+            alpha=self.alpha,
+        )
+        return statistical_test(primary.test).load()(sample)
+
+    def is_met_by(self, outcome: Outcome) -> bool:
+        """Return whether an outcome of the test is significant at the declared level."""
+        return outcome.p <= self.alpha
 
     @model_validator(mode="after")
     def _rules_once(self) -> Self:

@@ -177,6 +177,12 @@ def _start(
         )
 
 
+def asked_instruments(tree: Mapping[str, Plain]) -> set[str]:
+    """Return the keys of all instruments that a study asks."""
+    early, late = _instruments_asked(tree)
+    return early | late
+
+
 def _instruments_asked(tree: Mapping[str, Plain]) -> tuple[set[str], set[str]]:
     """Return the instruments asked up to the end of the last block, and those asked after it."""
     procedure = _dict(tree.get("procedure"))

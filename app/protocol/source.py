@@ -8,8 +8,10 @@ Python parsers follow) turns `no` into False, 12:30 into 750 and 010 into 8. Her
 false are booleans, only decimal numbers are numbers, and everything else is text.
 """
 
+import json
 import math
 import re
+import sys
 from dataclasses import dataclass, field
 
 import yaml
@@ -29,7 +31,7 @@ _FORBIDDEN = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff]")
 # Larger integers are not read identically by every JSON parser.
 MAX_INTEGER = 2**53 - 1
 _MAX_DIGITS = 40
-MAX_BYTES = 256 * 1024
+MAX_FILE_BYTES = 256 * 1024
 MAX_NODES = 20_000
 MAX_DEPTH = 12
 
@@ -65,9 +67,14 @@ def scalar_problem(text: str, *, plain: bool) -> ScalarProblem | None:
             f"{text} is not a finite number.", "Give a number, or put the word in quotes."
         )
     if _NUMBER.fullmatch(text) and not _is_representable(text):
+        most = (
+            f"Whole numbers go up to {MAX_INTEGER}"
+            if _INTEGER.fullmatch(text)
+            else f"Numbers go up to {sys.float_info.max:.3g} and have {_MAX_DIGITS} characters at"
+            " most"
+        )
         return ScalarProblem(
-            f"The number {text[:20]} is too large.",
-            f"Whole numbers go up to {MAX_INTEGER}; put it in quotes if it is a text.",
+            f"The number {text[:20]} is too large.", f"{most}; put it in quotes if it is a text."
         )
     return None
 
@@ -128,21 +135,7 @@ def read_source(text: str) -> Source:
     and dates stay text. Raises ConfigError for invalid YAML, for anchors, aliases and tags, and for
     files beyond the limits; problems that leave the tree readable are collected in the result.
     """
-    size = len(text.encode("utf-8", "surrogatepass"))
-    if size > MAX_BYTES:
-        raise ConfigError(
-            [
-                ConfigProblem(
-                    "",
-                    1,
-                    1,
-                    f"The file has {size} bytes, more than {MAX_BYTES}.",
-                    size,
-                    f"<= {MAX_BYTES}",
-                    "Shorten it: a study file contains settings and texts, never data.",
-                )
-            ]
-        )
+    _require_size(text)
     try:
         return _Builder(text).build()
     except yaml.MarkedYAMLError as error:
@@ -154,6 +147,48 @@ def read_source(text: str) -> Source:
         raise ConfigError(
             [ConfigProblem("", line, column, message, remedy="Remove it.")]
         ) from error
+
+
+def read_json(text: str) -> Source:
+    """Parse JSON with the parser of study files, which records lines: JSON is a subset of YAML.
+
+    Raises ConfigError as `read_source` does, for a text that is not JSON with JSON's own reason.
+    """
+    _require_size(text)
+    try:
+        # In JSON, raw tabs can only be white space, but this parser requires spaces.
+        return read_source(text.replace("\t", " "))
+    except ConfigError as unreadable:
+        try:
+            json.loads(text)
+        except json.JSONDecodeError as error:
+            message = f"This is not JSON: {error.msg}."
+            remedy = "Check commas, brackets and quotes here and in the line before."
+            problem = ConfigProblem("", error.lineno, error.colno, message, remedy=remedy)
+            raise ConfigError([problem]) from unreadable
+        except RecursionError:
+            pass
+        raise
+
+
+def _require_size(text: str) -> None:
+    size = len(text.encode("utf-8", "surrogatepass"))
+    if size <= MAX_FILE_BYTES:
+        return
+    raise ConfigError(
+        [
+            ConfigProblem(
+                "",
+                1,
+                1,
+                f"The file has {size} bytes, more than {MAX_FILE_BYTES}.",
+                size,
+                f"<= {MAX_FILE_BYTES}",
+                "Shorten it: a file of a study, an instrument or an avatar contains settings and"
+                " texts, never data.",
+            )
+        ]
+    )
 
 
 def path_text(path: Path) -> str:

@@ -1,15 +1,17 @@
 """A study as a value: everything that determines what happens to a participant."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, StringConstraints
 
+from app.plain_titles import not_plain
 from app.protocol.common import Key, Provenance, Strict, Text, canonical_json, refusal, sha256_of
 from app.protocol.conditions import Condition, Conditions, Orders
 from app.protocol.preregistration import Preregistration
 from app.protocol.procedure import FormStep, Procedure
 from app.protocol.safety import Safety
+from app.protocol.simulation import Simulation
 from app.protocol.tasks import Appearance, Tasks
 from app.protocol.validity import ValidWhen
 from app.science.skeleton import JOINT_NAMES
@@ -22,6 +24,17 @@ def _languages(languages: tuple[str, ...]) -> tuple[str, ...]:
     if len(set(languages)) < len(languages):
         raise refusal("A language is named twice.", value=list(languages), remedy="Name it once.")
     return languages
+
+
+def _plain(title: Mapping[str, str]) -> Mapping[str, str]:
+    for language, text in title.items():
+        if (problem := not_plain(text)) is not None:
+            raise refusal(
+                f"The title ({language}) is not plain text. {problem}",
+                value=text,
+                remedy="Remove the character, or type the title again.",
+            )
+    return title
 
 
 def _joints(parts: tuple[str, ...]) -> tuple[str, ...]:
@@ -92,7 +105,7 @@ class StudyProtocol(Strict):
         StringConstraints(pattern=r"^[a-z][a-z0-9_-]{0,79}$"),
         Field(description="lower-case letters, digits, - and _, at most 80"),
     ]
-    title: Text
+    title: Annotated[Text, AfterValidator(_plain)]
     description: Text
     provenance: Provenance
     languages: Annotated[tuple[Language, ...], Field(min_length=1), AfterValidator(_languages)]
@@ -115,6 +128,7 @@ class StudyProtocol(Strict):
     preregistration: Annotated[
         Preregistration | None, Field(exclude_if=lambda value: value is None)
     ] = None
+    simulation: Annotated[Simulation | None, Field(exclude_if=lambda value: value is None)] = None
 
     def condition(self, key: str) -> Condition:
         """Return the condition with that key; raise StopIteration if there is none."""

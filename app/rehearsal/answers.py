@@ -1,7 +1,7 @@
 """Fill in forms for the simulated participant: answers are drawn from the seed."""
 
-import re
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, Final
 
 import numpy as np
 
@@ -11,6 +11,27 @@ from app.science.simulation import Aspect, SimulatedItem, simulated_answers
 OPEN_PROMPT = "Simulated answer of a rehearsal."
 SIGNATURE = "M80 150L120 60L160 150M100 115L145 115M200 150L200 60L260 150L260 60"
 """A synthetic signature of two letters, as an SVG path."""
+
+
+NAMED: Final[Mapping[str, Mapping[str, Aspect]]] = {
+    "karas2020": {
+        **dict.fromkeys(("q6", "q7", "q8", "q9"), Aspect.AGENCY),
+        "q14": Aspect.SIMULTANEITY,
+    },
+    "veq": dict.fromkeys(("agency1", "agency2", "agency3", "agency4"), Aspect.AGENCY),
+    "pgf2021": {"r13": Aspect.AGENCY},
+}
+"""The aspects of items of the product's own instruments, by what they ask; others: ownership."""
+
+
+def aspects_named(protocol: Mapping[str, Any] | None) -> dict[str, dict[str, Aspect]]:
+    """Return item -> aspect by instrument: those that the study names, else the product's own."""
+    simulation = (protocol or {}).get("simulation") or {}
+    named = {
+        instrument: {item: Aspect(aspect) for item, aspect in items.items()}
+        for instrument, items in simulation.get("aspects", {}).items()
+    }
+    return {**{key: dict(items) for key, items in NAMED.items()}, **named}
 
 
 def agreement(form: dict[str, Any]) -> dict[str, Any]:
@@ -29,12 +50,16 @@ def fill_in(
     latency_ms: float | None,
     limb: str | None,
     rng: np.random.Generator,
+    aspects: Mapping[str, Aspect] | None = None,
 ) -> dict[str, Any]:
-    """Return answers to every item of an instrument (as the tablet receives it)."""
+    """Return answers to every item of an instrument (as the tablet receives it).
+
+    `aspects`: whose curve the answers to an item follow; those of other items follow ownership.
+    """
     likert = [item for item in instrument["items"] if item["type"] == "likert"]
     answers: dict[str, Any] = {}
     if likert:
-        aspects = _aspects(instrument)
+        curves = aspects or {}
         scales = {item["key"]: item.get("scale") or instrument["scale"] for item in likert}
         drawn = simulated_answers(
             [
@@ -42,7 +67,7 @@ def fill_in(
                     key,
                     scale["minimum"],
                     scale["maximum"],
-                    aspects.get(key, Aspect.OWNERSHIP),
+                    curves.get(key, Aspect.OWNERSHIP),
                 )
                 for key, scale in scales.items()
             ],
@@ -62,21 +87,6 @@ def _on_step(value: int, scale: dict[str, Any]) -> int:
     """Return the nearest step of a scale."""
     low, step = int(scale["minimum"]), int(scale.get("step", 1))
     return low + step * round((value - low) / step)
-
-
-def _aspects(instrument: dict[str, Any]) -> dict[str, Aspect]:
-    """Return the aspect of each item that contributes to a score named like an aspect.
-
-    The answers to such an item follow that aspect's curve.
-    """
-    return {
-        item["key"]: aspect
-        for aspect in Aspect
-        for score in instrument["scores"]
-        if score["key"] == aspect.value
-        for item in instrument["items"]
-        if re.search(rf"\b{re.escape(item['key'])}\b", score["formula"])
-    }
 
 
 def _answer(item: dict[str, Any], person: Person, rng: np.random.Generator) -> Any:

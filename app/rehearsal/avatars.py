@@ -3,24 +3,34 @@
 import asyncio
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Protocol
 
+import mujoco
 import numpy as np
 from httpx2 import AsyncClient
 from numpy.typing import NDArray
 
 from app.client import Json, call_with_retry
 from app.protocol.avatar import AvatarFile, configuration_of
-from app.science.avatar.configuration import Configuration, RunningSettings, as_configured
+from app.science.avatar.configuration import (
+    Configuration,
+    RunningSettings,
+    as_configured,
+    world_limbs,
+)
 from app.science.avatar.mjcf import SimulationError
 from app.science.avatar.simulation import Follower, PhysicsAvatar, SurfaceTouches
 from app.science.avatar.targets import TargetAngles
 from app.science.delay import DelayBuffer
+from app.science.rotations import Vector, rotate
 from app.science.simulation import FingerCapsules
 from app.science.skeleton import (
     FINGER_PARTS,
     JOINT_COUNT,
+    JOINT_INDEX,
     JOINT_NAMES,
+    PARENTS,
     Pose,
     Skeleton,
     body_part_segments,
@@ -71,6 +81,12 @@ class RemoteAvatar(Protocol):
         `fingers`: the participant's finger parts (30, 4), given with every frame or with none.
         """
 
+    def beside(self, own: Skeleton, pose: Pose, hand: str) -> Vector:
+        """Return the vector from the avatar's finger tip to that of the participant, in a pose.
+
+        Of the avatar that follows at once, and that nothing stops.
+        """
+
     def touches(self) -> tuple[Bools, Bools]:
         """Return the avatar's touches at the last frame, and what is near enough to keep one.
 
@@ -112,6 +128,10 @@ class DelayedCopy:
         self._pose = Pose(pose.root_position_m, delayed[:JOINT_COUNT])
         self.fingers = None if fingers is None else delayed[JOINT_COUNT:]
         return self._pose
+
+    def beside(self, own: Skeleton, pose: Pose, hand: str) -> Vector:  # noqa: ARG002 - as any avatar
+        """Return zero: a copy has the participant's own lengths."""
+        return (0.0, 0.0, 0.0)
 
     def touches(self) -> tuple[Bools, Bools]:
         """Return touches, determined by the distances between the body's capsules and the boxes."""
@@ -190,12 +210,18 @@ class PhysicsBody:
         self.avatar = PhysicsAvatar(mjcf)
         self.avatar.boxes.show(())
         angles = TargetAngles(configuration.in_force, self.avatar.parts)
-        self._follower = Follower(self.avatar, angles, target_space=configuration.target_space)
+        self._follower = Follower(
+            self.avatar,
+            angles,
+            target_space=configuration.target_space,
+            world_limbs=world_limbs(configuration.compliance),
+        )
         self._touches: SurfaceTouches | None = None
         self._configured = as_configured(configuration)
         self._began_s: float | None = None
         self.fingers: FloatArray | None = None
         self._with_fingers = with_fingers
+        self._places_m = _t_pose_of(self.avatar.model)
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -239,9 +265,46 @@ class PhysicsBody:
             self.fingers = self.avatar.finger_rotations()
         return Pose(followed.state.root_position_m, followed.state.rotations)
 
+    def beside(self, own: Skeleton, pose: Pose, hand: str) -> Vector:
+        """Return the vector from this body's finger tip to the participant's, in a pose."""
+        world = forward_kinematics(own, pose.root_position_m, pose.rotations)
+        at = JOINT_INDEX[hand]
+        tip_m = world.positions_m[at] + rotate(world.rotations[at], own.ends_m[at])
+        x, y, z = tip_m - self._tip_m(pose, world.rotations, hand)
+        return (float(x), float(y), float(z))
+
+    def _tip_m(self, pose: Pose, rotations: FloatArray, hand: str) -> FloatArray:
+        """Return where the finger tip is if every part takes the participant's rotation (22, 4)."""
+        places, chain = self._places_m, [hand]
+        while chain[-1] != JOINT_NAMES[0]:
+            chain.append(JOINT_NAMES[PARENTS[JOINT_INDEX[chain[-1]]]])
+        present = [part for part in reversed(chain) if part in places]
+        tip_m = self._hips_scale * pose.root_position_m
+        for part, following in pairwise(present):
+            offset = places[following] - places[part]
+            tip_m = tip_m + rotate(rotations[JOINT_INDEX[part]], offset)
+        side = hand.removesuffix("Hand")
+        end = places.get(f"{side}MiddleDistal")
+        if end is None or hand not in places:
+            return tip_m
+        return tip_m + rotate(rotations[JOINT_INDEX[hand]], _PAST_DISTAL * (end - places[hand]))
+
     def touches(self) -> tuple[Bools, Bools]:
         """Return touches, determined from the contacts of the simulation."""
         return no_touches(self.parts) if self._touches is None else self._touches.read()
+
+
+_PAST_DISTAL = 1.15
+"""From the wrist to the finger tip, over the distance to the last joint of the middle finger."""
+
+
+def _t_pose_of(model: mujoco.MjModel) -> dict[str, FloatArray]:
+    """Return the joints of a model's parts in the T-pose, in which frames are parallel."""
+    places: dict[str, FloatArray] = {}
+    for body in range(1, model.nbody):
+        parent = model.body(model.body_parentid[body]).name
+        places[model.body(body).name] = places.get(parent, np.zeros(3)) + model.body_pos[body]
+    return places
 
 
 def ordered_settings(configured: RunningSettings, order: AvatarOrder) -> RunningSettings:

@@ -9,6 +9,7 @@ from app.adapters.captures import CaptureError, read_capture_file
 from app.errors import file_problem
 from app.science.retargeting import (
     captured_fingers,
+    checked_skeleton,
     has_fingers,
     movement_in_place,
     propose_joint_map,
@@ -73,13 +74,15 @@ def _captured(path: Path, skeleton: Skeleton) -> tuple[Movement, FloatArray | No
 def skeleton_motion(path: Path) -> RigMotion:
     """Return the movement of the capture's own skeleton, or of one fitted to its markers or bodies.
 
+    A mirrored skeleton is mirrored back (`checked_skeleton`).
+
     Raises:
         UnusableCapture: no skeleton can be fitted.
         CaptureError, OSError: see `read_capture_file`.
     """
     motion = read_capture_file(path).motion
     if isinstance(motion, RigMotion):
-        return motion
+        return checked_skeleton(motion, propose_joint_map(motion.rig).joint_map)[0]
     from app.science.fitting import FitError, fit_skeleton  # most captures have a skeleton
 
     try:

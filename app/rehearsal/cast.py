@@ -14,6 +14,7 @@ from app.protocol import STEP_KINDS, TIMED_KINDS
 from app.rehearsal.answers import agreement, fill_in
 from app.rehearsal.body import Person
 from app.rehearsal.headset import WITHDRAWN, Headset
+from app.science.simulation import Aspect
 
 Json = dict[str, Any]
 ENDED = ("completed", "aborted", WITHDRAWN)
@@ -47,7 +48,8 @@ class MissedInterruptionError(RuntimeError):
 class Cast:
     """The three devices and their shared state.
 
-    `in_headset`: a client with the headset's token. `interruptions`: the pending ones, the next
+    `in_headset`: a client with the headset's token. `aspects`: what items ask about, by instrument;
+    simulated answers follow the aspect's curve. `interruptions`: the pending ones, the next
     first.
     """
 
@@ -57,6 +59,7 @@ class Cast:
     person: Person
     rng: np.random.Generator
     in_headset: AsyncClient
+    aspects: dict[str, dict[str, Aspect]] = field(default_factory=dict)
     say: Callable[[str], None] = lambda _: None
     submitted: set[str] = field(default_factory=set)
     interruptions: list[Interruption] = field(default_factory=list)
@@ -206,8 +209,14 @@ async def _fill_in(
 ) -> None:
     view = await cast.operator.view()
     step = view["steps"][administration["step_index"]]
+    instrument = administration["instrument"]
     answers = fill_in(
-        administration["instrument"], cast.person, step["latency_ms"], step["limb"], cast.rng
+        instrument,
+        cast.person,
+        step["latency_ms"],
+        step["limb"],
+        cast.rng,
+        cast.aspects.get(instrument["key"]),
     )
     await submit(administration, answers, f"rehearsal-{administration['key']}"[:64])
     cast.submitted.add(administration["key"])

@@ -19,6 +19,7 @@ from app.protocol import Tasks
 from app.rehearsal.avatars import AvatarSource, CannotChange, DelayedCopy, PhysicsBody, RemoteAvatar
 from app.rehearsal.body import FRAME_RATE_HZ, Person
 from app.rehearsal.goals import goal_of
+from app.rehearsal.sight import Sight
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
 from app.science.rotations import FloatArray
@@ -60,6 +61,7 @@ class FrameClock:
 
     speed: float
     frame: int = 0
+    lost_s: float = 0.0
     _started_s: float = field(default_factory=time.monotonic)
 
     def start(self) -> None:
@@ -70,6 +72,11 @@ class FrameClock:
     def t_s(self) -> float:
         """The time of the current frame."""
         return self.frame / FRAME_RATE_HZ
+
+    @property
+    def speed_reached(self) -> float:
+        """The speed so far, which is below `speed` where the machine was too slow for it."""
+        return self.t_s / (self.t_s / self.speed + self.lost_s) if self.frame else self.speed
 
     def now_s(self) -> float:
         """Return the current time, which may be between two frames."""
@@ -83,6 +90,7 @@ class FrameClock:
         due_in_s = self._started_s + self.t_s / self.speed - time.monotonic()
         if self.speed > 1.0 and -due_in_s * self.speed > LATE_S:
             self._started_s -= due_in_s
+            self.lost_s -= due_in_s
         return max(0.0, due_in_s)
 
 
@@ -131,6 +139,8 @@ class Headset:
         if physics is None:
             self._avatar = DelayedCopy(person.skeleton, with_fingers=person.fingers is not None)
         self._run: TimedRun | None = None
+        self._pose: Pose | None = None
+        self._sight = Sight()
         self._phase_id = 0
         self._buffers = Buffers()
         self._t_pose_since_s: float | None = None
@@ -144,6 +154,11 @@ class Headset:
         """Whether the study lets a phase continue while the connection is lost."""
         welcome = self.client.welcome
         return welcome is not None and welcome.on_disconnect == "continue"
+
+    @property
+    def speed_reached(self) -> float:
+        """How many times faster than real time its clock has run."""
+        return self._clock.speed_reached
 
     @property
     def t_s(self) -> float:
@@ -297,7 +312,7 @@ class Headset:
         if worn is None or worn is self._avatar:
             return
         worn.put_on()
-        self._avatar = worn
+        self._avatar, self._sight = worn, Sight()
         # Changes in force apply to this body, too, once it has taken the participant's pose.
         self._has_avatar_moved, self._is_unchanged = False, True
 
@@ -319,8 +334,16 @@ class Headset:
             foot = "right" if self._person.footedness == "both" else self._person.footedness
             solid = self._physics is not None
             goal = goal_of(run.state, Laterality(foot), solid=solid)
-        pose = self._person.participant.pose(t_s, goal)
-        avatar = self._avatar
+        avatar, before = self._avatar, self._pose
+        if avatar is not None and before is not None:
+            hand = "" if goal is None else goal.effector or ""
+            goal = self._sight.corrected(
+                goal,
+                t_s,
+                self._person.participant.latency_s,
+                lambda: avatar.beside(self._person.skeleton, before, hand),
+            )
+        pose = self._pose = self._person.participant.pose(t_s, goal)
         if avatar is None:
             return
         reaching = None if goal is None or goal.kind is not GoalKind.REACH else goal.effector

@@ -27,6 +27,7 @@ from app.client import (
     call_with_retry,
 )
 from app.protocol import Tasks
+from app.rehearsal.answers import aspects_named
 from app.rehearsal.avatars import FromServer
 from app.rehearsal.body import make_person
 from app.rehearsal.cast import Cast, Interruption, perform
@@ -95,7 +96,8 @@ class Visit:
 class RehearsalReport:
     """The result of a rehearsal: what was sent, and what the server reports as stored.
 
-    `status`: how the session ended; somebody else may have aborted it. The latency of phases is
+    `status`: how the session ended; somebody else may have aborted it. `speed`: as it was asked
+    for; `speed_reached`: as fast as the machine could go. The latency of phases is
     None if the caller must not know it.
     """
 
@@ -116,6 +118,7 @@ class RehearsalReport:
     duration_s: float
     seed: int
     speed: float
+    speed_reached: float
     capture: str | None
 
 
@@ -174,6 +177,7 @@ async def assembled(
         http = await stack.enter_async_context(_client(plan))
         await _sign_in(http, plan)
         session = await _join(http, plan)
+        study: Json = await call(http, "GET", f"/api/studies/{plan.study}")
         operator = Operator(http, session["id"])
         tablet_http = await stack.enter_async_context(AsyncClient(base_url=plan.url, timeout=30))
         await operator.pair("tablet", tablet_http, "rehearsal tablet")
@@ -205,6 +209,7 @@ async def assembled(
             person,
             rng,
             headset_http,
+            aspects_named(study["protocol"]),
             say,
             interruptions=list(plan.interruptions),
         )
@@ -283,11 +288,12 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
         questionnaires=len(view["scores"]),
         completions=cast.headset.completions,
         contacts=cast.headset.contacts,
-        side_contacts=sum(phase["side_contacts"] for phase in view["phases"]),
+        side_contacts=sum(phase["side_contacts"] or 0 for phase in view["phases"]),
         reconnects=cast.headset.client.reconnects,
         duration_s=duration_s,
         seed=plan.seed,
         speed=plan.speed,
+        speed_reached=round(cast.headset.speed_reached, 2),
         capture=None if plan.capture is None else plan.capture.name,
     )
 

@@ -18,6 +18,9 @@ from app.science.rotations import FloatArray, slerp
 
 _HIPS = 0
 
+LONGEST_DELAY_S = 2.0
+"""The longest delay that a buffer of poses allows unless it is made for a longer one."""
+
 
 class DelayError(ValueError):
     """A delay or a time is not valid: negative, not finite, or out of order."""
@@ -75,7 +78,7 @@ class DelayBuffer:
     conditions.
     """
 
-    def __init__(self, delay_s: float, *, longest_delay_s: float = 2.0) -> None:
+    def __init__(self, delay_s: float, *, longest_delay_s: float = LONGEST_DELAY_S) -> None:
         self._longest_s = longest_delay_s
         self._samples: deque[tuple[float, FloatArray]] = deque()
         self._delay_s = 0.0
@@ -99,6 +102,10 @@ class DelayBuffer:
                 " make it with a larger longest_delay_s."
             )
         self._delay_s = delay_s
+
+    def clear(self) -> None:
+        """Forget all samples; the next one may be at any time."""
+        self._samples.clear()
 
     def push(self, time_s: float, rotations: FloatArray) -> FloatArray:
         """Add the participant's current local rotations (22, 4) and return the avatar's.

@@ -66,6 +66,8 @@ class StreamName(StrEnum):
 
 BODY_STREAMS = (StreamName.TARGET, StreamName.ACTUAL)
 FINGER_STREAMS = (StreamName.TARGET_FINGERS, StreamName.ACTUAL_FINGERS)
+PARTICIPANT_STREAMS = (StreamName.TARGET, StreamName.TARGET_FINGERS)
+"""The participant's own movement, which every reader may know; the avatar's tells the condition."""
 STREAM_OF_CODE = {
     1: StreamName.TARGET,
     2: StreamName.ACTUAL,

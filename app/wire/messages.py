@@ -8,7 +8,14 @@ session, `ack` after each commit, `resend` where it expected an earlier seq, `fl
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    model_validator,
+)
 
 PROTOCOL_VERSION = 1
 SUBPROTOCOL = "reembody.v1"
@@ -18,21 +25,38 @@ MAX_EPOCH = 2**31 - 1
 GOALS = ("Hips", "Head", "LeftHand", "RightHand", "LeftLowerLeg", "RightLowerLeg")
 """The parts of the body whose goals may be tracked: those of inverse kinematics."""
 
-Seconds = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1e9)]
-Seq = Annotated[int, Field(ge=0, lt=MAX_SEQ)]
-Epoch = Annotated[int, Field(ge=1, le=MAX_EPOCH)]
-Angle = Annotated[float, Field(allow_inf_nan=False, ge=-7.0, le=7.0)]
-Count = Annotated[int, Field(ge=0, lt=2**31)]
-Nanoseconds = Annotated[int, Field(ge=0, lt=2**63)]
+
+def _number(value: object) -> object:
+    """Return what is no truth value and no text, which would be taken for a number otherwise.
+
+    1.0 is as good as 1: JSON does not tell them apart, and many clients know doubles only.
+    """
+    if isinstance(value, bool | str):
+        raise ValueError("must be a number, not true, false or a text")
+    return value
+
+
+_NUMBER = BeforeValidator(_number)
+YesOrNo = Annotated[bool, Field(strict=True)]
+Protocol = Annotated[int, _NUMBER]
+Number = Annotated[int, _NUMBER, Field(ge=1, le=10_000)]
+Seconds = Annotated[float, _NUMBER, Field(allow_inf_nan=False, ge=0.0, le=1e9)]
+Seq = Annotated[int, _NUMBER, Field(ge=0, lt=MAX_SEQ)]
+Epoch = Annotated[int, _NUMBER, Field(ge=1, le=MAX_EPOCH)]
+Angle = Annotated[float, _NUMBER, Field(allow_inf_nan=False, ge=-7.0, le=7.0)]
+Count = Annotated[int, _NUMBER, Field(ge=0, lt=2**31)]
+Nanoseconds = Annotated[int, _NUMBER, Field(ge=0, lt=2**63)]
 # PostgreSQL stores no NUL in a text.
 Name = Annotated[str, Field(pattern=r"^[^\x00]*$")]
 Goal = Literal["Hips", "Head", "LeftHand", "RightHand", "LeftLowerLeg", "RightLowerLeg"]
 GoalState = Literal["tracked", "inferred", "lost"]
 """How a goal is known: measured; computed from the other goals; or not at all at the moment."""
-Metres = Annotated[float, Field(allow_inf_nan=False, ge=-10.0, le=10.0)]
-Length = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=10.0)]
+Metres = Annotated[float, _NUMBER, Field(allow_inf_nan=False, ge=-10.0, le=10.0)]
+Length = Annotated[float, _NUMBER, Field(allow_inf_nan=False, ge=0.0, le=10.0)]
+Stature = Annotated[float, _NUMBER, Field(allow_inf_nan=False, ge=0.5, le=2.6)]
+"""As far as a body can be built for it."""
 Vector = tuple[Metres, Metres, Metres]
-Cosine = Annotated[float, Field(allow_inf_nan=False, ge=-1.001, le=1.001)]
+Cosine = Annotated[float, _NUMBER, Field(allow_inf_nan=False, ge=-1.001, le=1.001)]
 
 
 class Message(BaseModel):
@@ -54,17 +78,17 @@ class Hello(Message):
     """
 
     type: Literal["hello"] = "hello"
-    protocol: int
+    protocol: Protocol
     client: Name = Field(max_length=120)
     epoch: Epoch | None = None
     avatars: tuple[Annotated[Name, Field(max_length=40)], ...] = Field(
         default=("delayed_copy",), max_length=10
     )
-    fingers: bool = False
-    changes_avatar: bool = Field(default=False, exclude_if=lambda value: not value)
-    goals: bool = Field(default=False, exclude_if=lambda value: not value)
-    panels: bool = Field(default=False, exclude_if=lambda value: not value)
-    calibrates: bool = Field(default=False, exclude_if=lambda value: not value)
+    fingers: YesOrNo = False
+    changes_avatar: YesOrNo = Field(default=False, exclude_if=lambda value: not value)
+    goals: YesOrNo = Field(default=False, exclude_if=lambda value: not value)
+    panels: YesOrNo = Field(default=False, exclude_if=lambda value: not value)
+    calibrates: YesOrNo = Field(default=False, exclude_if=lambda value: not value)
 
     @property
     def abilities(self) -> frozenset[str]:
@@ -125,7 +149,7 @@ class CompletionReport(Message):
 
     kind: Literal["completion"] = "completion"
     phase_id: Count
-    number: int = Field(ge=1, le=10_000)
+    number: Number
     t_s: Seconds
     active_s: Seconds
     duration_s: Seconds
@@ -142,7 +166,7 @@ class AvatarChangeReport(Message):
     kind: Literal["avatar_changes"] = "avatar_changes"
     revision: Count
     t_s: Seconds
-    applied: bool
+    applied: YesOrNo
     problem: Name | None = Field(default=None, max_length=300)
     held_rad: dict[Annotated[Name, Field(max_length=40)], Angle] = Field(
         default_factory=dict, max_length=200
@@ -185,20 +209,39 @@ class CalibrationReport(Message):
     `tracker_from_goal`: for each goal that is tracked, the pose of the part's joint in the frame of
     what tracks it; for the head, that is the frame between the eyes. `residuals_m`: how far each
     goal was off in the poses that test the calibration. `sources`: what each goal was tracked by.
-    `notices`: what the headset noticed, such as swapped_sides or bent_knees.
+    `notices`: what the headset noticed, such as swapped_hands or bent_knees. `segments_m`: lengths
+    that were measured, by the names of an avatar's segments.
     """
 
     kind: Literal["calibration"] = "calibration"
     t_s: Seconds
     revision: Count | None = None
     cause: Name = Field(max_length=40)
-    stature_m: Length
+    stature_m: Stature
     span_m: Length | None = None
     eye_height_m: Length | None = None
     tracker_from_goal: dict[Goal, Pose] = Field(default_factory=dict)
     residuals_m: dict[Goal, Length] = Field(default_factory=dict)
     sources: dict[Goal, Annotated[Name, Field(max_length=40)]] = Field(default_factory=dict)
     notices: tuple[Annotated[Name, Field(max_length=40)], ...] = Field(default=(), max_length=20)
+    segments_m: dict[Annotated[Name, Field(max_length=40)], Length] = Field(
+        default_factory=dict, max_length=40, exclude_if=lambda value: not value
+    )
+
+
+class CalibrationStepReport(Message):
+    """Reports how far a calibration is that is under way, for the operator to see.
+
+    `step`: what the participant is asked to do (square, n_pose, t_pose, squat, reach, mirror), the
+    `number`th of `total`. `problem`: what keeps it from being done; null while nothing does.
+    """
+
+    kind: Literal["calibration_step"] = "calibration_step"
+    t_s: Seconds
+    step: Name = Field(max_length=40)
+    number: Count
+    total: Count
+    problem: Annotated[Name, Field(max_length=40)] | None = None
 
 
 class AddedLatencyReport(Message):
@@ -213,8 +256,8 @@ class AddedLatencyReport(Message):
     kind: Literal["added_latency"] = "added_latency"
     phase_id: Count
     t_s: Seconds
-    added_s: Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1.0)]
-    compensated_s: Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1.0)]
+    added_s: Annotated[float, _NUMBER, Field(allow_inf_nan=False, ge=0.0, le=1.0)]
+    compensated_s: Annotated[float, _NUMBER, Field(allow_inf_nan=False, ge=0.0, le=1.0)]
     runs_in: Literal["page", "worker"]
 
     @model_validator(mode="after")
@@ -244,6 +287,7 @@ ReportBody = Annotated[
     | AvatarChangeReport
     | GoalsReport
     | CalibrationReport
+    | CalibrationStepReport
     | AddedLatencyReport
     | CallReport,
     Field(discriminator="kind"),
@@ -391,7 +435,8 @@ class PanelOrder(Message):
     the step inside the headset (`POST /api/vr/acknowledge`), having read its text. `headset_off`:
     the step takes place outside the headset, so the participant should take it off. `held`: the
     session waits for the experimenter. `called`: the participant has called, and nobody has come
-    yet.
+    yet. `limb`: what the current step's task is done with; left out if it is no task.
+    `screen_texts`: the study's words for `freeze` and `walk_back`, as far as it has any.
     """
 
     language: str
@@ -403,6 +448,10 @@ class PanelOrder(Message):
     headset_off: bool
     held: bool
     called: bool
+    limb: Literal["hand", "foot"] | None = Field(
+        default=None, exclude_if=lambda value: value is None
+    )
+    screen_texts: dict[str, str] = Field(default_factory=dict, exclude_if=lambda value: not value)
 
 
 class ParticipantInfo(Message):

@@ -14,6 +14,8 @@ from app.wire.batch import FINGER_VALUES_PER_FRAME, Batch
 
 UNIT_TOLERANCE = 1e-3
 """A float32 unit quaternion that is the product of a few keeps its length within this of 1."""
+FARTHEST_M = 1000.0
+"""How far from the start square hips can be, along each axis: beyond every room."""
 FRAMES_AT_ONCE = 2048
 """Frames checked together: enough for little overhead, few enough to keep copies small."""
 
@@ -22,7 +24,8 @@ FRAMES_AT_ONCE = 2048
 class FrameFlags:
     """The flags of n frames, each (n,).
 
-    `non_finite`: any value is not finite. `non_unit`: any rotation is not of unit length.
+    `non_finite`: any value is not finite, or the hips are beyond `FARTHEST_M`. `non_unit`: any
+    rotation is not of unit length.
     """
 
     non_finite: NDArray[np.bool_]
@@ -49,9 +52,11 @@ def flag_frames(times_s: NDArray[np.float64], values: NDArray[np.float32]) -> Fr
         if untracked.any():
             values = np.where(untracked, np.float32(0.5), values)
     finite = np.isfinite(values).all(axis=1) & np.isfinite(times_s)
+    # The values of the root come first; fingers have none.
+    root = values.shape[1] % 4
     with np.errstate(invalid="ignore", over="ignore"):
-        # The values of the root come first; fingers have none.
-        rotations = values[:, values.shape[1] % 4 :].reshape(len(values), -1, 4).astype(np.float64)
+        finite &= (np.abs(values[:, :root]) <= FARTHEST_M).all(axis=1)
+        rotations = values[:, root:].reshape(len(values), -1, 4).astype(np.float64)
         length = np.sqrt(np.einsum("njk,njk->nj", rotations, rotations))
         unit = (np.abs(length - 1.0) <= UNIT_TOLERANCE).all(axis=1)
     return FrameFlags(non_finite=~finite, non_unit=finite & ~unit)

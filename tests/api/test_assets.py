@@ -53,7 +53,7 @@ def test_small_and_compressed_files_are_not_compressed(client: TestClient, name:
 
 
 def test_only_the_workers_for_webassembly_may_run_it(client: TestClient, tmp_path: Path) -> None:
-    """Only workers for WebAssembly may run it, and only two of them code made from text."""
+    """Only workers for WebAssembly may run it, and only three of them code made from text."""
     (tmp_path / "wasm").mkdir()
     for script in ("short.js", "long.js"):
         (tmp_path / "wasm" / script).write_text(SCRIPT if script == "long.js" else "1;\n")
@@ -61,7 +61,7 @@ def test_only_the_workers_for_webassembly_may_run_it(client: TestClient, tmp_pat
         assert "'wasm-unsafe-eval'" in policy
         assert "'unsafe-eval'" not in policy
         assert "default-src 'none'" in policy
-    for evaluating in ("textureWorker-1.js", "bodiesWorker-1.js"):
+    for evaluating in ("textureWorker-1.js", "bodiesWorker-1.js", "tryoutWorker-1.js"):
         (tmp_path / "wasm" / evaluating).write_text("1;\n")
         policy = client.get(f"/assets/wasm/{evaluating}").headers["content-security-policy"]
         assert policy == f"{WASM_POLICY} 'unsafe-eval'"

@@ -5,7 +5,11 @@ import pytest
 from app.platform.policy import ANYONE, HEADSET, LAB, POLICY, TABLET
 from tests.features.lab import Lab
 
-NOT_OVER_HTTP = {"WEBSOCKET /api/vr/stream", "WEBSOCKET /api/sessions/{session_id}/pose"}
+NOT_OVER_HTTP = {
+    "WEBSOCKET /api/vr/stream",
+    "WEBSOCKET /api/vr/self-tests/storage",
+    "WEBSOCKET /api/sessions/{session_id}/pose",
+}
 
 
 @pytest.mark.one_engine
@@ -28,6 +32,7 @@ def test_a_route_is_for_people_or_for_one_kind_of_device() -> None:
 def test_analysts_cannot_change_anything() -> None:
     """Analysts can call only routes that read, check, compute, export or set their own password."""
     trying = {
+        "POST /api/avatars/model",
         "POST /api/studies/check",
         "POST /api/studies/edit",
         "POST /api/studies/timeline",
@@ -35,6 +40,8 @@ def test_analysts_cannot_change_anything() -> None:
         "POST /api/instruments/check",
         "POST /api/instruments/score",
         "PUT /api/me/password",
+        "POST /api/avatar-tunings/{tuning_id}/comparison",
+        "POST /api/avatar-tunings/{tuning_id}/configuration",
         "POST /api/walking/paths",
         "POST /api/walking/models/{model_id}/prediction",
         "POST /api/walking/models/{model_id}/slice",

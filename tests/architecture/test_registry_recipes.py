@@ -215,7 +215,7 @@ PARTICIPANTS_COLUMN = Recipe(
             after("    sessions: list[ParticipantSession]\n", "    visits: int\n")
         ],
         f"{RIGHTS}/participants.py": [
-            after("        sessions=list(sessions),\n", "        visits=len(sessions),\n")
+            after("        sessions=sessions,\n", "        visits=len(sessions),\n")
         ],
         COLUMNS: [
             before(

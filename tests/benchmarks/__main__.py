@@ -13,6 +13,7 @@ import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from tests.benchmarks.against import PAIRS, compare
 from tests.benchmarks.report import CannotMeasure, Report, as_table
@@ -51,11 +52,19 @@ def parser() -> argparse.ArgumentParser:
     duration.add_argument("--minutes", type=float, help="duration of the load in minutes")
     made.add_argument("--runs", type=int, help="number of runs, if there are several")
     made.add_argument(
+        "--widths", type=_widths, metavar="PX,PX", help="windows of these widths, if there are any"
+    )
+    made.add_argument(
         "--write", action="store_true", help="store the result that the product ships"
     )
     made.add_argument("--against", metavar="COMMIT", help="compare with COMMIT, in pairs of runs")
     made.add_argument("--pairs", type=int, default=PAIRS, help=f"how many pairs ({PAIRS})")
     return made
+
+
+def _widths(text: str) -> tuple[int, ...]:
+    """Read `390,1280`."""
+    return tuple(int(one) for one in text.split(","))
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -81,9 +90,11 @@ def _measured(asked: argparse.Namespace) -> Report:
     unknown = sorted(set(asked.only or ()) - set(benchmark.PARTS))
     if unknown:
         raise CannotMeasure(f"no part {unknown[0]}; {asked.name} has {', '.join(benchmark.PARTS)}")
-    given: dict[str, float | bool] = {"write": True} if asked.write else {}
+    given: dict[str, Any] = {"write": True} if asked.write else {}
     if asked.seconds or asked.minutes:
         given["duration_s"] = asked.seconds or 60.0 * asked.minutes
+    if asked.widths:
+        given["widths"] = asked.widths
     if asked.runs:
         given["runs"] = asked.runs
     report: Report = benchmark.measure(frozenset(asked.only or benchmark.PARTS), **given)

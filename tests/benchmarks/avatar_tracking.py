@@ -9,13 +9,19 @@ may do. On a floor the body rests where contacts put it: figures of all samples,
 without contact, have no limit. `delay` sets 0, 125 and 350 ms and measures the achieved latency, at
 most one frame off.
 
+`floor` lets the body follow the six walks of `WALKS`, in place as `./run tune --capture` reads them
+and travelling as captured, with nothing around it and on a floor. For each it states the errors
+against the clamped and the unclamped targets in a row of `rows`: `capture`, `moves` ("in place" or
+"travels"), `floor`, `against` ("clamped" or "unclamped"), `mean_deg`, `p95_deg`, `clipped_share`.
+
 Needs the shared data; missing captures are left out.
 """
 
 import time
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 
@@ -26,14 +32,16 @@ from app.science.avatar.targets import TargetAngles, joint_rotations
 from app.science.avatar.tuning import EMPTY_SPACE, Spread, follow_capture, track, tune
 from app.science.latency import achieved_latency
 from app.science.skeleton import Movement
-from tests.benchmarks.clips import CLIPS, LONG_WALK, movement, movements
+from tests.benchmarks.clips import CLIPS, LONG_WALK, SIX_WALKS, movement, movements
 from tests.benchmarks.report import Figure, Report
 from tests.science.avatar.captured import RATE_HZ, STATURE_M
 from tests.science.avatar.simulated import follow
 
-PARTS = ("tracking", "delay")
+PARTS = ("tracking", "delay", "floor")
 MEAN_LIMIT_DEG, P95_LIMIT_DEG, FRAME_MS = 1.5, 5.0, 1e3 / RATE_HZ
 DELAYS_MS = (0.0, 125.0, 350.0)
+FLOOR_COST_DEG = 1.0
+"""The largest mean error that a floor may add to a walk."""
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
@@ -44,6 +52,10 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
             report.add(*_tracked(name, clip))
     if "delay" in parts:
         report.add(*_delays())
+    if "floor" in parts:
+        rows = list(_on_floor())
+        report.add(*_costs(rows))
+        report.beside["rows"] = [asdict(row) for row in rows]
     return report
 
 
@@ -111,3 +123,45 @@ def _delayed(name: str, clip: Movement, scene: Scene) -> Iterator[Figure]:
         yield Figure("delay", f"{told}: achieved", late_ms, "ms")
         off_ms = abs(late_ms - ordered_ms)
         yield Figure("delay", f"{told}: off by", off_ms, "ms", "at most", FRAME_MS)
+
+
+@dataclass(frozen=True)
+class FloorRow:
+    """The errors of one walk against one kind of target, with or without a floor."""
+
+    capture: str
+    moves: str
+    floor: bool
+    against: str
+    mean_deg: float
+    p95_deg: float
+    clipped_share: float
+
+
+def _on_floor() -> Iterator[FloorRow]:
+    for name in SIX_WALKS:
+        for travels in (False, True):
+            clip = movement(name, travels=travels)
+            if clip is None:
+                continue
+            found = follow_capture(_tuned(), STATURE_M, clip)
+            for floor, one in ((False, found.alone), (True, found.on_floor)):
+                where = (Path(name).stem, "travels" if travels else "in place", floor)
+                for against, spread in (("clamped", one.clamped), ("unclamped", one.unclamped)):
+                    errors = (spread.mean_deg, spread.p95_deg, one.clipped_share)
+                    yield FloorRow(*where, against, *errors)
+
+
+def _costs(rows: list[FloorRow]) -> Iterator[Figure]:
+    """Return what the floor adds to the mean error of each walk against the clamped targets."""
+    for row in rows:
+        told = f"{row.capture} {row.moves}, {row.against}"
+        where = "on a floor" if row.floor else "nothing around"
+        yield Figure("floor", f"{told}, {where}, mean", row.mean_deg, "deg")
+        yield Figure("floor", f"{told}, {where}, p95", row.p95_deg, "deg")
+    means = {(r.capture, r.moves, r.floor): r.mean_deg for r in rows if r.against == "clamped"}
+    for (capture, moves, floor), mean_deg in means.items():
+        if floor:
+            cost = mean_deg - means[capture, moves, False]
+            told = f"{capture} {moves}: the floor adds"
+            yield Figure("floor", told, cost, "deg", "at most", FLOOR_COST_DEG)

@@ -47,7 +47,9 @@ await withBundles(frontend, async (bundled) => {
   const { frames, parts, cases } = read("ik");
   const solved = cases.map(({ waist }) => {
     const solver = new InverseKinematics(mujoco, model);
-    const found = frames.map((frame) => solver.solve(goalsOf(frame, parts, waist)));
+    const found = frames.map((frame) =>
+      structuredClone(solver.solve(goalsOf(frame, parts, waist))),
+    );
     const rows = {
       angles_rad: found.map((one) => [...one.anglesRad]),
       hips_m: found.map((one) => [...one.hips.positionM]),

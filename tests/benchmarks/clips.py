@@ -11,6 +11,11 @@ from tests.support.shared_data import SHARED_DATA_VARIABLE, shared_data_folder
 CLIPS = {"walk": (WALK, False), "reach": (REACH, False), "turn": (TURN, True)}
 """File, and whether it travels: CMU 02_01 in place; a person who inspects objects on tables; CMU
 05_06, a dancer who turns round four times over four metres."""
+SIX_WALKS = (
+    "cmu_bvh/02_01.bvh", "cmu_bvh/05_06.bvh", "cmu_bvh/06_01.bvh", "cmu_bvh/12_02.bvh",
+    "bvh_toolbox/walk01.bvh", "c3d/Gait.c3d",
+)  # fmt: skip
+"""Walks from four sources; only the first was used while gains were chosen."""
 LONG_WALK = LONG
 """A walk that is long enough to measure a latency."""
 

@@ -25,11 +25,18 @@ PARTS = ("login", "pages")
 PARTICIPANTS = 1000
 REPEATS, LOGINS = 25, 20
 CALL_LIMIT_MS, LOGIN_LIMIT_MS = 100.0, 300.0
-NO_PAGE = ("/live", "/export", "/access", "/rows", "/preflight", "/preregistration/report")
-"""Streams and files, whose duration depends on their size, and what completed sessions lack."""
+NO_PAGE = (
+    *("/live", "/export", "/access", "/rows", "/preflight", "/preregistration/report"),
+    "/avatar-choices",
+)
+"""Streams and files, whose duration depends on their size, and what these sessions lack."""
 KEYS = {"avatars": SHIPPED, "instruments": "karas2020", "studies": STUDY}
 """What `{key}` stands for, by the kind of thing."""
-QUERIES = {"diff": {"from": "1", "to": "1"}, "model": {"stature_m": "1.75"}}
+QUERIES = {
+    "diff": {"from": "1", "to": "1"},
+    "model": {"stature_m": "1.75"},
+    "verification": {"avatars": "175cm"},
+}
 """The parameters that a call needs, by the end of its path."""
 
 

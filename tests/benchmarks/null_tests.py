@@ -58,7 +58,7 @@ ABOUT = {
     "wilcoxon_exact": About("item", "Wilcoxon signed-rank, exact, 350 against 0 ms", exact=True),
     "wilcoxon_asymptotic": About("item", "Wilcoxon signed-rank, normal, 350 against 0 ms"),
     "wilcoxon_holm": About("item", "Wilcoxon, exact, any of three pairs after Holm", exact=True),
-    "page": About("item", "Page's trend, as reported"),
+    "page": About("item", "Page's trend, by the tables without ties"),
     "page_given_ties": About("item", "Page's trend, exact given the ties", exact=True),
     "page_asymptotic": About("item", "Page's trend, normal"),
     "rm_anova_gg": About("measure", "rm ANOVA, latency, Greenhouse-Geisser"),

@@ -5,8 +5,9 @@ the limit here 50 microseconds at the 99.9th percentile. Calls during which the 
 processor to another program are included in one row of the table and left out of the other. `batch`
 is a movement of 22 joints on one core, at least a million frames a second. `peers` is a walk of 31
 joints (CMU 02_01 if the shared data are available, else a synthetic one), compared with SciPy's
-Rotation and PyMotion doing the same work. Rates are medians of several rounds, so that other
-programs on the machine affect few of them.
+Rotation and PyMotion doing the same work. `anatomy` checks every capture of the shared data
+(`retargeting_anatomy`): one row each in `rows`, and refusals by rule in `refused`. Rates are
+medians of several rounds, so that other programs on the machine affect few of them.
 """
 
 import resource
@@ -20,12 +21,13 @@ from app.adapters.bvh import read_bvh
 from app.science.retargeting import Retargeter, propose_joint_map
 from app.science.rig import Rig, RigMotion
 from app.science.rotations import FloatArray, geodesic_angle, identity
+from tests.benchmarks import retargeting_anatomy as anatomy
 from tests.benchmarks import retargeting_peers as peers
 from tests.benchmarks.report import Figure, Report
 from tests.science.retargeting.bodies import SAME, own_body, random_movement, scaled
 from tests.support.shared_data import shared_data_folder
 
-PARTS = ("frame", "batch", "peers")
+PARTS = ("frame", "batch", "peers", "anatomy")
 ROUNDS, CALLS, FRAMES = 7, 10_000, 20_000
 FRAME_LIMIT_US, BATCH_LIMIT = 50.0, 1e6
 METRES_PER_CMU_UNIT = 0.056444
@@ -46,6 +48,10 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
         report.add(Figure("batch", "22 joints", rate, "frames/s", "at least", BATCH_LIMIT))
     if "peers" in parts:
         report.add(*_beside_peers())
+    if "anatomy" in parts:
+        found = list(anatomy.rows())
+        report.add(*anatomy.figures(found))
+        report.beside |= {"rows": found, "refused": anatomy.refusals(found)}
     return report
 
 

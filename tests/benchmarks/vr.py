@@ -3,18 +3,21 @@
 A scripted participant wears an emulated headset on the page that is shipped (`tests/support/
 vr_visit.py`), through the whole shipped study with its six phases, on a real server. The visit is
 not drawn, because this machine imitates a graphics card in software; `mirror` draws single moments
-of it beside three's Reflector, and `weight` sums what a browser fetches for the page.
+of it beside three's Reflector, `heap` watches the memory of ten minutes, and `weight` sums what a
+browser fetches for the page. `desktop` counts the clicks from the console's first page into a body
+on this screen. `calibration` needs no browser: `vr_calibration`.
 """
 
 import gzip
 import re
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median, quantiles
 
+import httpx2
 import numpy as np
 import yaml
 from playwright.sync_api import Browser, Page, Response
@@ -23,53 +26,79 @@ from sqlalchemy import select
 from app.models import ClientReport
 from app.protocol import TIMED_KINDS
 from tests.benchmarks.report import Figure, Report
+from tests.benchmarks.vr_calibration import calibrations
+from tests.benchmarks.vr_memory import memory_figures
+from tests.e2e.people import PICTURE_HIDDEN, Experimenter
 from tests.features.record.headset.site import open_site
 from tests.protocol.helpers import SHIPPED, loaded
+from tests.support.acting_on_screen import act_on_this_screen
 from tests.support.bodies_page import frame_times, shipped_avatar
 from tests.support.browser import launched_browser
-from tests.support.room import EVERYTHING, MOMENTS, Drawn, opened_room
+from tests.support.room import EVERYTHING, MOMENTS, PAUSED, Drawn, opened_room
 from tests.support.server import LiveServer
-from tests.support.vr_visit import FRAME_RATE_HZ, Json, begun, journey_script, ok
+from tests.support.vr_rules import Outcome, derived, stored
+from tests.support.vr_visit import FRAME_RATE_HZ, QUICK, Json, begun, journey_script, ok
 
-PARTS = ("session", "frame", "latency", "mirror", "weight")
-VISITS = frozenset({"session", "frame", "latency"})
+PARTS = ("session", "frame", "latency", "mirror", "heap", "weight", "calibration", "desktop")
+VISITS = frozenset({"session", "frame"})
 STUDY = "headset-benchmark"
 TIME_SCALE = 10.0
 PHASE_S, ROAM_S = 20.0, 5.0
 AROUND_S = 1.0
 """Preparation and freeze of a phase, s."""
+ANALYSED_WITHIN_S = 120.0
+"""Patience until the server has measured the latencies of a visit that has just ended, s."""
+NOT_YET: Json = {
+    "achieved_latency_ms": None,
+    "reason": f"the server has not analysed it within {ANALYSED_WITHIN_S:g} s of the visit's end",
+}
+FETCHED_WITHIN_S = 30.0
 SPEED_LIMIT = 1.5
 FRAME_LIMIT_MS, LOOP_LIMIT = 2.5, 1.3
 LATENCY_LIMIT_MS = 11.1
 CALLS_LIMIT, TRIANGLES_LIMIT = 20, 100_000
 PIXELS_LIMIT_PERCENT, PIXEL_TOLERANCE = 0.5, 24
 WEIGHT_LIMIT_MB = 4.0
+CLICKS_LIMIT, DESKTOP_LIMIT_S = 3, 20.0
 BYTES_PER_MB = 1_000_000
 
 
 def measure(parts: frozenset[str], duration_s: float = PHASE_S) -> Report:
     """Measure the parts; `duration_s`: active time of each of the visit's six phases."""
     report = Report("vr")
+    if "calibration" in parts:
+        report.add(*calibrations())
+    if parts - {"calibration"}:
+        _in_a_browser(report, parts, duration_s)
+    return report
+
+
+def _in_a_browser(report: Report, parts: frozenset[str], duration_s: float) -> None:
     with (
         tempfile.TemporaryDirectory(prefix="reembody-vr-") as folder,
         LiveServer(Path(folder)) as server,
         launched_browser() as browser,
     ):
+        if "desktop" in parts:
+            report.add(*_desktop(browser, server))
         if "weight" in parts:
             report.add(*_weight(browser, server, _made(folder, "weight")))
+        if "heap" in parts:
+            report.add(*memory_figures(browser, server, _made(folder, "memory")))
         if "mirror" in parts:
             report.add(*_mirror(browser, _made(folder, "room")))
         if "frame" in parts:
             report.add(*_bodies(browser, server, _made(folder, "bodies")))
         if parts & VISITS:
-            done = _visited(browser, server, _made(folder, "visit"), duration_s)
+            done = _visited(browser, server, _made(folder, "visit"), study_of(duration_s))
             if "session" in parts:
                 report.add(*_record(done))
             if "frame" in parts:
                 report.add(*_frames(done.frames_ms))
-            if "latency" in parts:
-                report.add(*_latencies(done))
-    return report
+        if "latency" in parts:
+            study = study_of(duration_s, f"{STUDY}-latency")
+            steps = _made(folder, "steps")
+            report.add(*_latencies(_visited(browser, server, steps, study, marches=True)))
 
 
 def study_of(duration_s: float, key: str = STUDY) -> str:
@@ -93,6 +122,10 @@ class _Visited:
     frames_ms: Sequence[float]
     added_s: dict[int, float]
     """What the headset said that remains of its own latency, by phase."""
+    reported: Outcome
+    """Contacts and completions as the page reported them."""
+    derived: Outcome
+    """The same as the rules in Python make them of the same inputs."""
 
 
 def _made(folder: str, name: str) -> Path:
@@ -101,10 +134,14 @@ def _made(folder: str, name: str) -> Path:
     return made
 
 
-def _visited(browser: Browser, server: LiveServer, folder: Path, duration_s: float) -> _Visited:
+def _visited(
+    browser: Browser, server: LiveServer, folder: Path, study: str, *, marches: bool = False
+) -> _Visited:
+    """Take part in a visit; `marches`: step on the spot instead of doing the foot task."""
     problems: list[str] = []
+    protocol = loaded(study).protocol
     with open_site(server) as site, browser.new_context() as context:
-        ok(site.operator.post("/api/studies", json={"yaml": study_of(duration_s)}))
+        ok(site.operator.post("/api/studies", json={"yaml": study}))
         context.on("weberror", lambda error: problems.append(str(error.error)))
         context.on(
             "console",
@@ -115,21 +152,25 @@ def _visited(browser: Browser, server: LiveServer, folder: Path, duration_s: flo
             context,
             journey_script(folder),
             server.url,
-            STUDY,
+            protocol.key,
             time_scale=TIME_SCALE,
+            traits=QUICK,
         )
+        if marches:
+            visit.headset.do("journey.isMarching = true")
         began_s = time.monotonic()
         with tablet:
             view = visit.perform()
         took_s = time.monotonic() - began_s
         if view["status"] != "completed":
             raise RuntimeError(f"the visit ended as {view['status']}, not completed")
-        receipt = ok(site.operator.get(f"/api/sessions/{visit.session_id}/receipt"))
+        receipt = _receipt(site.operator, visit.session_id, len(view["phases"]))
         told = select(ClientReport).where(
             ClientReport.session_id == visit.session_id, ClientReport.type == "added_latency"
         )
         with site.database.reading() as db:
             payloads = [report.payload for report in db.scalars(told)]
+            reported = stored(db, visit.session_id)
         return _Visited(
             view=view,
             receipt=receipt,
@@ -138,20 +179,41 @@ def _visited(browser: Browser, server: LiveServer, folder: Path, duration_s: flo
             took_s=took_s,
             frames_ms=_page_ms(visit.headset.page),
             added_s={one["phase_id"]: one["added_s"] - one["compensated_s"] for one in payloads},
+            reported=reported,
+            derived=derived(visit.headset.tell("journey.rules"), protocol.tasks),
         )
+
+
+def _receipt(operator: httpx2.Client, session_id: str, phases: int) -> Json:
+    """Return the receipt, once the server has measured the latency of as many phases."""
+    until_s = time.monotonic() + ANALYSED_WITHIN_S
+    while True:
+        receipt: Json = ok(operator.get(f"/api/sessions/{session_id}/receipt"))
+        if len(receipt["achieved_latency"]) == phases or time.monotonic() > until_s:
+            return receipt
+        time.sleep(1.0)
 
 
 def _record(done: _Visited) -> tuple[Figure, ...]:
     part = "session"
     streams = done.receipt["streams"]
     phases = [one for one in done.view["phases"] if one["kind"] in TIMED_KINDS]
-    stored = sum(one["stored"] for one in streams)
+    kept = sum(one["stored"] for one in streams)
     missing = sum(one["missing"] for one in streams)
     return (
         Figure(part, "timed phases done", len(phases), ""),
         Figure(part, "tasks completed", sum(one["completions"] for one in phases), ""),
-        Figure(part, "frames and reports stored", stored, ""),
+        Figure(part, "frames and reports stored", kept, ""),
         Figure(part, "frames and reports missing", missing, "", "at most", 0),
+        Figure(part, "contacts stored", len(done.reported.contacts), ""),
+        Figure(
+            part,
+            "contacts and completions unlike those of the Python rules",
+            _unlike(done.reported, done.derived),
+            "",
+            "at most",
+            0,
+        ),
         Figure(part, "problems of the receipt", len(done.receipt["problems"]), "", "at most", 0),
         Figure(part, "errors of the page", len(done.problems), "", "at most", 0),
         Figure(part, "duration", done.took_s, "s"),
@@ -164,6 +226,11 @@ def _record(done: _Visited) -> tuple[Figure, ...]:
             SPEED_LIMIT,
         ),
     )
+
+
+def _unlike(one: Outcome, other: Outcome) -> int:
+    pairs = ((one.contacts, other.contacts), (one.completions, other.completions))
+    return sum(len(set(a) ^ set(b)) for a, b in pairs)
 
 
 def _page_ms(page: Page) -> list[float]:
@@ -204,16 +271,22 @@ def _bodies(browser: Browser, server: LiveServer, folder: Path) -> list[Figure]:
 
 
 def _latencies(done: _Visited) -> list[Figure]:
-    """Compare what the server measured with what it ordered and what the headset said it adds."""
+    """Compare what the server measured with what it ordered and what the headset said it adds.
+
+    The receipt is read, not the session: the last phase is measured after the session has ended.
+    """
     found: list[Figure] = []
+    measured = {one["phase_id"]: one for one in done.receipt["achieved_latency"]}
     for one in done.view["phases"]:
         if one["kind"] != "task":
             continue
         name = f"{one['limb']}, {one['latency_ms']:g} ms ordered"
         expected_ms = one["latency_ms"] + 1000.0 * done.added_s[one["phase_id"]]
-        achieved_ms = one["achieved_latency_ms"]
+        latency = measured.get(one["phase_id"], NOT_YET)
+        achieved_ms = latency["achieved_latency_ms"]
         if achieved_ms is None:
-            found.append(Figure("latency", f"{name}: not measured", 1, "", "at most", 0))
+            why = f"{name}: not measured: {latency['reason']}"
+            found.append(Figure("latency", why, 1, "", "at most", 0))
             continue
         off_ms = abs(achieved_ms - expected_ms)
         found += [
@@ -235,7 +308,10 @@ def _mirror(browser: Browser, folder: Path) -> tuple[Figure, ...]:
     part = "mirror"
     study = yaml.safe_load(SHIPPED)
     with browser.new_context() as context, opened_room(context, folder, study) as room:
-        full = room.draw(EVERYTHING)
+        full = room.draw_fading(EVERYTHING)
+        without = room.draw_fading({**EVERYTHING, "panel": None})
+        stopping = room.draw_fading({**EVERYTHING, "panel": "stopping"})
+        paused = room.draw_fading(PAUSED)
     pictures: dict[str, Drawn] = {}
     for mirror in ("double", "reflector"):
         with (
@@ -248,7 +324,12 @@ def _mirror(browser: Browser, folder: Path) -> tuple[Figure, ...]:
     rival = "three's Reflector"
     limit = PIXELS_LIMIT_PERCENT
     return (
-        Figure(part, "draw calls of an eye", full.calls, "", "at most", CALLS_LIMIT),
+        Figure(part, "draw calls of an eye", without.calls, "", "at most", CALLS_LIMIT),
+        Figure(part, "with a panel pointed at", full.calls, "", "at most", CALLS_LIMIT),
+        Figure(
+            part, "with a panel and a stop on its way", stopping.calls, "", "at most", CALLS_LIMIT
+        ),
+        Figure(part, "in the pause room", paused.calls, "", "at most", CALLS_LIMIT),
         Figure(part, "triangles of an eye", full.triangles, "", "at most", TRIANGLES_LIMIT),
         Figure(part, "changes of the render target", full.target_switches, "", "at most", 0),
         Figure(part, "free roam: draw calls of an eye", ours.calls, "", rival, threes.calls),
@@ -269,32 +350,71 @@ def _differing_percent(ours: Drawn, theirs: Drawn, eye: int) -> float:
     return 100.0 * float((apart > PIXEL_TOLERANCE).mean())
 
 
+def _desktop(browser: Browser, server: LiveServer) -> tuple[Figure, ...]:
+    """Go from the console's first page into a body on this screen, drawn as it is shown."""
+    with browser.new_context(viewport={"width": 1280, "height": 800}) as context:
+        # The console is behind the new tab then, where browsers draw nothing; headless ones do.
+        context.add_init_script(PICTURE_HIDDEN)
+        page = context.new_page()
+        Experimenter(page, server.url).log_in()
+        acted = act_on_this_screen(page)
+    return (
+        Figure("desktop", "clicks", acted.clicks, "", "at most", CLICKS_LIMIT),
+        Figure("desktop", "seconds", acted.took_s, "s", "at most", DESKTOP_LIMIT_S),
+    )
+
+
 def _weight(browser: Browser, server: LiveServer, folder: Path) -> tuple[Figure, ...]:
-    """Sum what the browser fetches for the page, compressed: opened, then paired and in VR."""
+    """Sum what the browser fetches for the page, compressed: opened, then paired and in VR.
+
+    In VR the physics comes beside standby: the worker of the bodies, and MuJoCo for it.
+    """
     part, peer, limit = "weight", "at most", WEIGHT_LIMIT_MB
     study = study_of(PHASE_S, f"{STUDY}-weight")
-    fetched: dict[str, int] = {}
+    fetched: set[str] = set()
 
-    def weigh(answer: Response) -> None:
+    def note(answer: Response) -> None:
         if answer.ok and "/api/" not in answer.url:
-            fetched[answer.url] = len(gzip.compress(answer.body(), 6))
+            fetched.add(answer.url)
 
     with open_site(server) as site:
         ok(site.operator.post("/api/studies", json={"yaml": study}))
         with browser.new_context() as context:
             page = context.new_page()
-            page.on("response", weigh)
+            page.on("response", note)
             page.goto(f"{server.url}/vr", wait_until="networkidle")
-            opened_mb = sum(fetched.values()) / BYTES_PER_MB
+            opened_mb = _gzipped_mb(site.operator, fetched)
         fetched.clear()
         with browser.new_context() as context:
-            context.on("response", weigh)
+            context.on("response", note)
             script = journey_script(folder)
-            begun(
+            visit, _ = begun(
                 site.operator, context, script, server.url, f"{STUDY}-weight", time_scale=TIME_SCALE
             )
-            in_vr_mb = sum(fetched.values()) / BYTES_PER_MB
+            until_s = time.monotonic() + FETCHED_WITHIN_S
+            while len(physics := _of_physics(fetched)) < 2:
+                if time.monotonic() > until_s:
+                    raise RuntimeError(f"beside standby the page fetched {physics} of the physics")
+                visit.headset.page.wait_for_timeout(100)
+            physics_mb = _gzipped_mb(site.operator, physics)
+            in_vr_mb = _gzipped_mb(site.operator, fetched)
     return (
         Figure(part, "files of the opened page, gzip", opened_mb, "MB", peer, limit),
-        Figure(part, "files until VR is shown, gzip", in_vr_mb, "MB", peer, limit),
+        Figure(part, "files in VR with the bodies' worker, gzip", in_vr_mb, "MB", peer, limit),
+        Figure(part, "of them for the physics, beside standby", physics_mb, "MB"),
     )
+
+
+def _gzipped_mb(client: httpx2.Client, urls: Iterable[str]) -> float:
+    """Return what the files take compressed; browsers keep no body as large as MuJoCo's to ask."""
+    sizes = (len(gzip.compress(client.get(url).content, 6)) for url in sorted(urls))
+    return sum(sizes) / BYTES_PER_MB
+
+
+def _of_physics(urls: Iterable[str]) -> list[str]:
+    """Return the URLs of the bodies' worker and of MuJoCo."""
+    return [
+        url
+        for url in urls
+        if "/wasm/bodiesWorker-" in url or ("/mujoco-" in url and url.endswith(".wasm"))
+    ]

@@ -26,6 +26,7 @@ from app.science.walking.following import SteeringFollower
 from app.science.walking.maps import MapMaker, WalkDatabase, database_of, maps_of
 from app.science.walking.models import FitOptions, FittedWalking, fitted, person_folds
 from app.science.walking.records import LENGTH, STATURE, TURNING, PlannedWalk
+from app.science.walking.scene import Scene
 from app.science.walking.synthetic import (
     POPULATIONS,
     Population,
@@ -70,6 +71,17 @@ def made(entries: Sequence[PlannedWalk], maker: MapMaker, names: tuple[str, ...]
     return database_of(entries, [one for _, one in maps_of(entries, maker)], names)
 
 
+def people_of_laboratory(population: Population, seed: int) -> list[PlannedWalk]:
+    """Return the walks of the people of a database, in the laboratory's sixteen scenes."""
+    return list(synthetic_walks(population, laboratory_scenes(), Sample(PEOPLE, seed=seed)))
+
+
+def people_of_workplace(population: Population, scene: Scene, seed: int) -> list[PlannedWalk]:
+    """Return the walks of other people on all paths of a scene."""
+    sample = Sample(OTHERS, REPETITIONS, seed=1000 + seed, prefix="other ")
+    return list(synthetic_walks(population, [scene], sample))
+
+
 @cache
 def studied() -> tuple[Studied, ...]:
     """Compute the results for all populations, once per process; this takes some minutes."""
@@ -78,13 +90,10 @@ def studied() -> tuple[Studied, ...]:
 
 def _study(population: Population, seed: int) -> Studied:
     began = time.perf_counter()
-    entries = list(synthetic_walks(population, laboratory_scenes(), Sample(PEOPLE, seed=seed)))
+    entries = people_of_laboratory(population, seed)
     database = made(entries, MapMaker(), NAMES)
     fit = fitted(database, FitOptions(seed=seed))
-    sample = Sample(OTHERS, REPETITIONS, seed=1000 + seed, prefix="other ")
-    one, two = (
-        list(synthetic_walks(population, [scene], sample)) for scene in map(load_shipped, SCENES)
-    )
+    one, two = (people_of_workplace(population, load_shipped(key), seed) for key in SCENES)
     rng = np.random.default_rng(seed)
     cells = [
         Cell(population.name, "laboratory", _left_out(entries, database, seed, rng)),

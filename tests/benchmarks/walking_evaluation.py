@@ -7,8 +7,12 @@
 `populations` are the cells of `walking_cells`: P_prob's CRPS at most .9 of P_adapt's and below
 P_stat's, P_adapt's below P_stat's, each in 80 % of the cells; the interquartile range of
 predictions over that of the walks, median over courses, from .75 to 1.5. `replication` are the
-experiments of the paper; of these only the leave-out errors have limits. `real` needs the shared
-data. Takes a few minutes.
+experiments of the paper; of these only the leave-out errors have limits. `mixed` predicts the same
+synthetic walkers with P_mixed and the baselines; its JSON has `synthetic`, one row for each cell of
+`walking_mixed`. `real` needs the shared
+data: its JSON has `evaluations`, one row for each model and data set of `walking_people`. On every
+data set our model's CRPS must not be larger than the best baseline's by more than the interval over
+people; on the ten-subject table its coverages must be within 8 points. Takes a few minutes.
 """
 
 import sys
@@ -20,11 +24,14 @@ import numpy as np
 
 from tests.benchmarks.report import Figure, Report
 from tests.benchmarks.walking_cells import Cell, studied
+from tests.benchmarks.walking_mixed import mixed_cells
+from tests.benchmarks.walking_people import BASELINE_NAMES, OURS, TABLE, Score, less, scores
 from tests.benchmarks.walking_real import RealWalks, real_walks, shared_folder
 from tests.benchmarks.walking_replication import Replication, replication
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "walking-replication.md"
 SHARE, RATIO, IQR_LOW, IQR_HIGH = 80.0, 0.9, 0.75, 1.5
+POINTS = 8.0
 NEIGHBOURS_LIMITS, NODES_LIMITS = (0.5, 5.5), (0.05, 0.17)
 
 
@@ -34,6 +41,11 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
     for part, figures in FIGURES.items():
         if part in parts:
             report.add(*figures())
+    if "mixed" in parts:
+        report.beside["synthetic"] = [one.as_json() for one in mixed_cells()]
+    folder = shared_folder()
+    if "real" in parts and folder is not None:
+        report.beside["evaluations"] = [one.as_json() for one in scores(folder)]
     return report
 
 
@@ -75,6 +87,23 @@ def population_figures() -> Iterator[Figure]:
     yield Figure(part, "IQR ratio, median", float(np.median(ratios)), "", "at most", IQR_HIGH)
 
 
+def mixed_figures() -> Iterator[Figure]:
+    """Yield how P_mixed compares with the best baseline on synthetic walkers; without limits."""
+    rows = [one.as_json() for one in mixed_cells()]
+    gaps = np.array([one["mixed_less_best_95_s"] for one in rows], dtype=np.float64)
+    yield Figure("mixed", "cells", float(len(rows)), "")
+    yield Figure("mixed", "better than the best baseline, interval below 0",
+                 float((gaps[:, 1] < 0.0).sum()), "")  # fmt: skip
+    yield Figure("mixed", "worse than the best baseline, interval above 0",
+                 float((gaps[:, 0] > 0.0).sum()), "")  # fmt: skip
+    for level in ("coverage_50", "coverage_90"):
+        inside = np.array([one[level] for one in rows], dtype=np.float64)
+        name = f"{level.replace('_', ' of ')} %"
+        yield Figure("mixed", f"{name}, least", float(inside.min()), "%")
+        yield Figure("mixed", f"{name}, median", float(np.median(inside)), "%")
+        yield Figure("mixed", f"{name}, most", float(inside.max()), "%")
+
+
 def replication_figures() -> Iterator[Figure]:
     """Return the leave-out errors of the prediction by neighbours and by radial bases."""
     one, part = repeated(), "replication"
@@ -99,11 +128,35 @@ def real_figures() -> Iterator[Figure]:
     yield Figure("real", "duration off, median of distances", float(np.median(errors)), "s")
     for name, outcome in found.captures.outcomes.items():
         yield Figure("real", f"CMU walks left out, CRPS {name}", outcome.mean_crps_s, "s")
+    yield from left_out_figures()
+
+
+def left_out_figures() -> Iterator[Figure]:
+    """Yield how our model compares with the best baseline on people who were left out."""
+    folder = shared_folder()
+    if folder is None:
+        return
+    by_set: dict[str, dict[str, Score]] = {}
+    for one in scores(folder):
+        by_set.setdefault(one.data.name, {})[one.method] = one
+    for name, found in by_set.items():
+        best = min((found[own] for own in BASELINE_NAMES), key=lambda one: one.crps_s.mean())
+        gap, low, high = less(found[OURS], best)
+        about = f"{name}: CRPS ours less {best.method}"
+        yield Figure("real", about, gap, "s")
+        yield Figure("real", f"{about}, 95 % from", low, "s", "at most", 0.0)
+        yield Figure("real", f"{about}, 95 % to", high, "s")
+    ours = by_set[TABLE][OURS]
+    for level, inside in ((50.0, ours.inside_50), (90.0, ours.inside_90)):
+        off = abs(100.0 * float(inside.mean()) - level)
+        yield Figure("real", f"{TABLE}: coverage of {level:.0f} % off", off, "points", "at most",
+                     POINTS)  # fmt: skip
 
 
 FIGURES = {
     "populations": population_figures,
     "replication": replication_figures,
+    "mixed": mixed_figures,
     "real": real_figures,
 }
 PARTS = tuple(FIGURES)
@@ -113,7 +166,9 @@ def main(arguments: list[str]) -> int:
     """Write the replication report with --write; otherwise print it."""
     from tests.benchmarks.walking_report import replication_report
 
-    text = replication_report(studied(), repeated(), real())
+    folder = shared_folder()
+    people = () if folder is None else scores(folder)
+    text = replication_report(studied(), repeated(), real(), people, mixed_cells())
     if "--write" in arguments:
         DOCUMENT.write_text(text, encoding="utf-8")
     else:

@@ -90,19 +90,20 @@ def shared_folder() -> Path | None:
 def real_walks(folder: Path) -> RealWalks:
     """Fit the model on a few people's walks and test it on others."""
     fit, raw = (_fitted(folder, scaled=scaled) for scaled in (True, False))
-    others = tuple(_planned(walk) for walk in _captured(folder, LEFT_OUT))
+    others = tuple(_planned(walk) for walk in captured_walks(folder, LEFT_OUT))
     result = evaluate(fit.models, FOLLOWER, others, np.random.default_rng(1), draws=DRAWS)
     worst = max(one.off_sds for one in _distances(folder, raw))
     return RealWalks(fit, tuple(_distances(folder, fit)), result, others, worst)
 
 
 def _fitted(folder: Path, *, scaled: bool) -> FittedWalking:
-    known = [*_foot_walks(folder, scaled=scaled), *_captured(folder, FITTED_CAPTURES)]
+    known = [*foot_walks(folder, scaled=scaled), *captured_walks(folder, FITTED_CAPTURES)]
     database = made([_planned(walk) for walk in known], MapMaker(), (LENGTH, TURNING))
     return fitted(database, FitOptions(seed=7))
 
 
-def _foot_walks(folder: Path, *, scaled: bool) -> Iterator[Walk]:
+def foot_walks(folder: Path, *, scaled: bool) -> Iterator[Walk]:
+    """Read the foot paths of two people, scaled to the distance that was walked or not."""
     for path in sorted((folder / "walking" / "short_walks").glob("subject*.mat")):
         subject, rest = path.name.removeprefix("subject").split("distance")
         walk = read_foot_walk(path.read_bytes(), name=path.name, subject=f"Kuo {subject}")
@@ -113,7 +114,8 @@ def _foot_walks(folder: Path, *, scaled: bool) -> Iterator[Walk]:
             yield replace(walk, xy_m=walk.xy_m * (walked_m / walk.length_m))
 
 
-def _captured(folder: Path, names: tuple[str, ...]) -> Iterator[Walk]:
+def captured_walks(folder: Path, names: tuple[str, ...]) -> Iterator[Walk]:
+    """Read the walks of CMU captures."""
     for name in names:
         kind = "cmu_bvh" if name.endswith(".bvh") else "cmu_asfamc"
         reading = Reading(metres_per_unit=METRES_PER_CMU_UNIT) if kind == "cmu_bvh" else Reading()

@@ -1,13 +1,15 @@
 """Write the replication report as Markdown, with the paper's tables next to ours."""
 
 from collections.abc import Iterable, Sequence
+from typing import cast
 
 import numpy as np
 
-from app.science.walking.evaluation import Evaluation
+from app.science.walking.evaluation import LEAST_PEOPLE, Evaluation
 from app.science.walking.maps import SuitabilityOptions
 from app.science.walking.models import FittedWalking
 from tests.benchmarks.walking_cells import OTHERS, PEOPLE, REPETITIONS, Studied
+from tests.benchmarks.walking_mixed import MixedCell
 from tests.benchmarks.walking_paper import (
     PAPER_LONG,
     PAPER_PERCENTILES,
@@ -15,26 +17,41 @@ from tests.benchmarks.walking_paper import (
     PAPER_SWEEP,
     PAPER_TESTS,
 )
+from tests.benchmarks.walking_people import BASELINE_NAMES, OURS, Score, less
 from tests.benchmarks.walking_real import RealWalks
 from tests.benchmarks.walking_replication import Replication
 from tests.benchmarks.walking_report_texts import (
+    FEW_PEOPLE,
     INTRODUCTION,
+    LEFT_OUT_PEOPLE,
+    MIXED_ON_POPULATIONS,
     READING_OF_RESULTS,
     REAL_PEOPLE,
 )
 from tests.benchmarks.walking_verdicts import verdicts
 
+FEW = " †"
 MODELS = {"stat": "P_stat", "adapt": "P_adapt", "prob": "P_prob"}
 
 
 def replication_report(
-    populations: Sequence[Studied], repeated: Replication, real: RealWalks | None
+    populations: Sequence[Studied],
+    repeated: Replication,
+    real: RealWalks | None,
+    scores: Sequence[Score],
+    mixed: Sequence[MixedCell],
 ) -> str:
     """Return the whole document."""
     parts = [
         INTRODUCTION.format(people=PEOPLE, others=OTHERS, times=REPETITIONS),
         "## What reproduces, and what does not\n\n" + verdicts(populations, repeated),
+        *(
+            ["## Real people, left out one at a time\n\n" + left_out_people(scores)]
+            if scores
+            else []
+        ),
         "## Populations\n\n" + _populations(populations),
+        "## Populations: P_mixed and the baselines\n\n" + mixed_section(mixed),
         *(_workplace(repeated, number) for number in (0, 1)),
         "## Model parameters\n\n" + _submodels(repeated),
         "## Interpolation\n\n" + _left_out(repeated),
@@ -44,7 +61,7 @@ def replication_report(
         "## Static parameters\n\n" + _static(repeated),
     ]
     if real is not None:
-        parts.append("## Real people\n\n" + _real(real))
+        parts.append("## Real people: the paper's model, fitted on a few\n\n" + _real(real))
     parts.append(READING_OF_RESULTS)
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
@@ -85,6 +102,79 @@ def _populations(populations: Sequence[Studied]) -> str:
     overall = f"Median IQR ratio over the courses of all cells: {np.median(ratios):.2f}."
     chosen = f"Readings chosen on the training people:\n\n{readings}"
     return f"{about}\n\n{_table(head, rows)}\n\n{overall}\n\n{chosen}"
+
+
+def mixed_section(cells: Sequence[MixedCell]) -> str:
+    """Return what P_mixed and the baselines do on the walks of the section before."""
+    rows = []
+    for cell in cells:
+        told, outcomes = cell.as_json(), cell.evaluation.outcomes
+        low_s, high_s = cast("list[float]", told["mixed_less_best_95_s"])
+        gap_s = told["mixed_less_best_s"]
+        rows.append(
+            (
+                cell.population,
+                cell.situation,
+                *(f"{outcomes[name].mean_crps_s:.3f}" for name in (OURS, *BASELINE_NAMES)),
+                f"{cell.best_baseline}: {gap_s:+.3f} ({low_s:+.3f} to {high_s:+.3f})",
+                f"{told['coverage_50']:.0f} / {told['coverage_90']:.0f}",
+            )
+        )
+    head = ("population", "situation", "CRPS P_mixed, s",
+            *(f"CRPS {name}, s" for name in BASELINE_NAMES),
+            "P_mixed less best baseline, s (95 %)", "inside 50 / 90 %")  # fmt: skip
+    return f"{MIXED_ON_POPULATIONS}\n{_table(head, rows)}"
+
+
+def left_out_people(scores: Sequence[Score]) -> str:
+    """Return what every model does on real people; intervals over few of them are marked."""
+    by_set: dict[str, dict[str, Score]] = {}
+    for one in scores:
+        by_set.setdefault(one.data.name, {})[one.method] = one
+    rows: list[Sequence[str]] = []
+    gaps: list[Sequence[str]] = []
+    for name, found in by_set.items():
+        for method, one in found.items():
+            told, mark = one.as_json(), _mark(one)
+            cells = [f"{told['crps_s']:.3f} ({_interval(told['crps_s_95'], 3)}){mark}"]
+            for share in ("50", "90"):
+                inside = f"{told[f'coverage_{share}']:.0f}"
+                cells.append(f"{inside} ({_interval(told[f'coverage_{share}_95'], 0)}){mark}"
+                             if len(one.crps_s) and told["coverage_90"] else "-")  # fmt: skip
+            title = MODELS.get(method, "P_mixed" if method == OURS else method)
+            rows.append((name, str(told["walks"]), _people(one), title, *cells))
+        best = min((found[own] for own in BASELINE_NAMES), key=lambda one: one.crps_s.mean())
+        line, paper = found["line"], found.get("prob")
+        gaps.append((
+            name, _people(line), f"{best.method}: {_gap(found[OURS], best)}",
+            "-" if paper is None else _gap(found[OURS], paper),
+            "-" if paper is None else _gap(paper, line),
+        ))  # fmt: skip
+    head = ("data", "walks", "people", "model", "CRPS, s (95 %)", "inside 50 % (95 %)",
+            "inside 90 % (95 %)")  # fmt: skip
+    gap_head = ("data", "people", "P_mixed less best baseline, s (95 %)",
+                "P_mixed less P_prob, s (95 %)", "P_prob less line, s (95 %)")  # fmt: skip
+    note = FEW_PEOPLE.format(mark=FEW, least=LEAST_PEOPLE).strip()
+    return f"{LEFT_OUT_PEOPLE}\n{_table(gap_head, gaps)}\n\n{note}\n\n{_table(head, rows)}"
+
+
+def _people(one: Score) -> str:
+    count = len(one.data.walks.persons)
+    return str(count) if one.data.ids_are_people else f"{count} numbers"
+
+
+def _mark(one: Score) -> str:
+    return FEW if len(one.data.walks.persons) < LEAST_PEOPLE else ""
+
+
+def _gap(first: Score, second: Score) -> str:
+    gap, low, high = less(first, second)
+    return f"{gap:+.3f} ({low:+.3f} to {high:+.3f}){_mark(first)}"
+
+
+def _interval(bounds: object, digits: int) -> str:
+    low, high = cast("list[float]", bounds)
+    return f"{low:.{digits}f} to {high:.{digits}f}"
 
 
 def _workplace(one: Replication, number: int) -> str:

@@ -1,5 +1,6 @@
 """Tests of `reembody analyse`: figures, tables, missing data and refusals."""
 
+from itertools import permutations, product
 from pathlib import Path
 
 import pytest
@@ -101,6 +102,35 @@ def test_the_text_output_has_means_tests_and_methods(tmp_path: Path) -> None:
     assert "GG eps" in result.stdout
     assert "contested" in result.stdout
     assert max(len(line) for line in result.stdout.splitlines()) <= 200
+
+
+def test_the_trend_of_tied_answers_is_exact_given_the_ties(tmp_path: Path) -> None:
+    """Page's p, printed and as JSON, are shares of all arrangements of the tied ranks, both ways.
+
+    The tables without ties give another p, which is in the JSON under a name of its own.
+    """
+    answers = ((1, 1, 2), (1, 2, 3), (2, 1, 2))
+    ranks = ((1.5, 1.5, 3.0), (1.0, 2.0, 3.0), (2.5, 1.0, 2.5))
+    sums = [
+        sum(place * rank for row in rows for place, rank in enumerate(row, start=1))
+        for rows in product(*(permutations(row) for row in ranks))
+    ]
+    found = sum(place * rank for row in ranks for place, rank in enumerate(row, start=1))
+    rises = sum(one >= found for one in sums) / len(sums)
+    falls = sum(one <= found for one in sums) / len(sums)
+    rows = [
+        f"P{person},{latency},{answer}"
+        for person, row in enumerate(answers)
+        for latency, answer in zip((0, 125, 350), row, strict=True)
+    ]
+    path = _written(tmp_path, ["person,latency,score", *rows])
+    page = _COMMAND.figures(path, *_FACTOR)["page"]
+    assert (page["p"], page["p_falling"]) == pytest.approx((rises, falls))
+    assert (page["p_given_ties"], page["p_falling_given_ties"]) == pytest.approx((rises, falls))
+    assert page["p_by_tables"] != pytest.approx(rises)
+    text = _COMMAND.run(path, *_FACTOR).stdout
+    printed = f"p = {rises:.4f} that it rises, p = {falls:.4f} that it falls, exact given the ties"
+    assert printed in text
 
 
 def test_the_same_seed_gives_the_same_intervals(tmp_path: Path) -> None:
@@ -310,3 +340,79 @@ def test_another_v_of_r_is_noted(tmp_path: Path) -> None:
     # 0.3 - 0.2 = 0.09999999999999998 has rank 1 in R, and 0.1 - 0.2 rank 2: V = 1 + 3 + 4.
     assert figures["pairwise"][0]["w"] == 1.5
     assert any("R's wilcox.test gives V = 8 instead of 8.5" in one for one in figures["warnings"])
+
+
+def test_several_measures_are_never_averaged(tmp_path: Path) -> None:
+    """A long table of two scores is refused with how to choose one; each is analysed alone."""
+    lines = ["person,latency,limb,score,value"]
+    for person in range(6):
+        for latency in (0, 125):
+            for limb in ("hand", "foot", ""):
+                lines.append(f"P{person},{latency},{limb},agency,{7 - latency / 50 - person % 2}")
+                lines.append(f"P{person},{latency},{limb},ownership,{50 + latency + person}")
+    path = _written(tmp_path, lines)
+    asked = ("--subject", "person", "--within", "latency", "--within", "limb", "--measure", "value")
+    refused = _COMMAND.refusal(path, *asked)
+    assert "'agency' and 'ownership'" in refused
+    assert "--where 'score=...'" in refused
+    by_number = path.read_text().replace("agency", "3").replace("ownership", "4")
+    other = _written(tmp_path, by_number.splitlines(), "numbers.csv")
+    assert _COMMAND.figures(other, *asked)["rows_used"] == 48  # numbers are measured, not named
+    figures = _COMMAND.figures(path, *asked, "--where", "score=agency")
+    assert (figures["rows_used"], figures["rows_left_out"]) == (24, 48)
+    assert max(one["mean"] for one in figures["means"]) <= 7.0
+    limbs = next(one for one in figures["design"]["within"] if one["factor"] == "limb")
+    assert limbs["levels"] == ["foot", "hand"]
+
+
+def test_words_that_tell_the_rows_of_a_cell_apart_are_never_averaged_silently(
+    tmp_path: Path,
+) -> None:
+    """Two items in a column of any name are refused with its name and `--where`, even if one lacks.
+
+    A column of words may be averaged over if asked; words that do not recur are remarks.
+    """
+    rows = [
+        f"P{person},{latency},{item},{base + latency / 50 + person % 3}"
+        for person in range(6)
+        for latency in (0, 125, 350)
+        for item, base in (("agency", 100), ("ownership", 0))
+    ]
+    path = _written(tmp_path, ["person,latency,kind,score", *rows[:-1]])
+    refused = _COMMAND.refusal(path, *_FACTOR)
+    assert "Column 'kind'" in refused
+    assert "agency, ownership" in refused
+    assert "--where 'kind=...'" in refused
+    alone = _COMMAND.figures(path, *_FACTOR, "--where", "kind=agency")
+    assert alone["means"][0]["mean"] == pytest.approx(101.0)
+    over = _COMMAND.figures(path, *_FACTOR, "--average", "kind")
+    assert over["means"][0]["mean"] == pytest.approx(51.0)
+    assert any("their mean was taken" in one for one in over["warnings"])
+    twice = [",".join((row, "A" if "agency" in row else "B")) for row in rows]
+    path = _written(tmp_path, ["person,latency,kind,score,letter", *twice])
+    assert "'letter'" not in _COMMAND.run(path, *_FACTOR, "--average", "kind").output
+    path = _written(tmp_path, ["person,latency,kind,score", *rows])
+    assert "no column 'item'" in _COMMAND.refusal(path, *_FACTOR, "--average", "item")
+    remarks = [line.replace("agency", f"at {at}").replace("ownership", f"at {at}")
+               for at, line in enumerate(rows)]  # fmt: skip
+    path = _written(tmp_path, ["person,latency,kind,score", *remarks])
+    assert _COMMAND.figures(path, *_FACTOR)["missing"]["averaged_cells"] == 18
+
+
+@pytest.mark.parametrize("code", ["-99", "99", "999.0"])
+def test_a_usual_code_for_missing_far_from_all_other_values_is_noted(
+    tmp_path: Path, code: str
+) -> None:
+    """A -99 among answers of 1 to 7 is noted with its line, and a 99 among percentages is not."""
+    lines = _lines()
+    lines[2] = f"P1,0,{code},ok"
+    noted = _COMMAND.figures(_written(tmp_path, lines), *_FACTOR)["warnings"]
+    assert any(f"score is {float(code):g} in line 3, far" in one for one in noted)
+    text = _COMMAND.run(_written(tmp_path, lines), *_FACTOR).stdout
+    assert "(1 to 6); it was used as a number" in text or "(1 to 7); it was used" in text
+    rows = [
+        f"P{who},{at},{90 + who + (at > 0) * (4 - who % 2)}" for who in range(10) for at in (0, 125)
+    ]
+    shares = _written(tmp_path, ["person,latency,score", *rows])
+    assert ",99\n" in shares.read_text()
+    assert _COMMAND.figures(shares, *_FACTOR)["warnings"] == []

@@ -7,6 +7,7 @@ from typing import get_args, get_type_hints
 import pytest
 import typer
 
+from app.cli import progress
 from app.cli.commands import app
 from app.cli.errors import UNUSABLE
 from app.errors import file_problem
@@ -29,7 +30,16 @@ READ: dict[str, tuple[str, ...]] = {
     "walk evaluate model": (MISSING, "walks.csv"),
     "walk evaluate walks": ("model.npz", MISSING),
     "walk evaluate people": ("model.npz", "walks.csv", "--people", MISSING),
+    "avatar save file": (MISSING, "mine"),
+    "avatar edit operations": ("standard", "--operations", MISSING),
+    "instrument answers": (MISSING,),
     "rehearse capture": ("--capture", MISSING),
+    "pilot power assumptions": ("reembodiment-latency", "--assumptions", MISSING),
+    "pilot merge records": (MISSING,),
+    "tracking align headset": (MISSING, MISSING),
+    "tracking align tracker": ("head.csv", MISSING),
+    "tracking align move": ("head.csv", "head.csv", "--move", MISSING, "--out", "moved.csv"),
+    "crossing vehicle fmu": ("--connect", "127.0.0.1:1", "--fmu", MISSING),
     "restore file": (MISSING,),
     "restore erasures": ("whole.reembody", "--erasures", MISSING),
     "serve certificate": ("--lan", "--certificate", MISSING, "--key", "key.pem"),
@@ -48,9 +58,16 @@ WRITTEN = {
     "backup file",
     "retarget out",
     "figure out",
+    "instrument out",
     "tune out",
+    "avatar edit out",
+    "avatar convert out",
+    "avatar load out",
     "walk fit out",
     "rehearse data",
+    "pilot power out",
+    "crossing run out",
+    "tracking align out",
 }
 """Files and folders that a command creates."""
 
@@ -59,9 +76,13 @@ WRITTEN = {
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Change to a folder with its own data and files, in which the command is run."""
     monkeypatch.chdir(tmp_path)
+    # A slow machine says what it is doing; only the refusal is tested here.
+    monkeypatch.setattr(progress, "FIRST_UPDATE_S", 600.0)
     monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path / "data"))
     (tmp_path / "key.pem").write_text("no key")
     (tmp_path / "clip.bvh").write_text(BVH)
+    poses = "".join(f"{at},0,1.7,0,1,0,0,0\n" for at in range(9))
+    (tmp_path / "head.csv").write_text(f"time_s,x_m,y_m,z_m,qw,qx,qy,qz\n{poses}")
     (tmp_path / "walks.csv").write_text("time_s,x_m,y_m,subject\n0,0,0,a\n1,1,0,a\n2,2,0,a\n")
     return tmp_path
 

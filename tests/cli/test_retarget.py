@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,12 @@ import pytest
 from app.adapters.bvh import read_bvh
 from app.adapters.captures.bvh_export import to_bvh
 from app.cli.retarget.inputs import ground_along
+from app.science.anatomy import mirrored_skeleton
 from app.science.retargeting import reference_avatar
 from app.science.rig import Rig, RigMotion
 from tests.cli.invoked import Invoked
 from tests.science.retargeting.bodies import scaled
+from tests.science.retargeting.test_floor_clearance import curved_and_sinking
 from tests.science.retargeting.walks import made_walk
 
 _KEYS = [
@@ -25,6 +28,9 @@ _KEYS = [
     "step_heights_m",
     "foot_slide_m_s",
     "unmapped_joints",
+    "floor",
+    "notices",
+    "conventions",
 ]
 _COMMAND = Invoked("retarget")
 _run, _figures, _refusal = _COMMAND.run, _COMMAND.figures, _COMMAND.refusal
@@ -36,6 +42,27 @@ def clip(tmp_path: Path) -> Path:
     path = tmp_path / "walk.bvh"
     path.write_text(to_bvh(made_walk(reference_avatar(1.75)).motion))
     return path
+
+
+@pytest.mark.parametrize("factor", [0.01, 2.54])
+def test_a_body_of_no_human_size_is_noted_with_the_unit_that_was_used(
+    tmp_path: Path, factor: float
+) -> None:
+    """A clip whose unit is wrong is noted by the stature it implies; JSON names unit and origin."""
+    path = tmp_path / "walk.bvh"
+    path.write_text(to_bvh(made_walk(reference_avatar(1.75)).motion))
+    right = _figures(path, "--to", "165cm")
+    assert [one["rule"] for one in right["notices"]] == []
+    assert right["conventions"]["length"]["origin"] == "guessed"
+    unit = float(right["stride_lengths_m"]["source"][0])
+    metres = {"cm": 0.01, "mm": 0.001, "m": 1.0}[right["conventions"]["length"]["value"]]
+    wrong = _figures(path, "--to", "165cm", "--unit", metres * factor)
+    (notice,) = wrong["notices"]
+    assert (notice["rule"], notice["action"]) == ("length", "noted")
+    assert "0.5 to 2.6 m" in notice["valid"]
+    assert wrong["conventions"]["length"]["origin"] == "chosen"
+    assert wrong["stride_lengths_m"]["source"][0] == pytest.approx(factor * unit, rel=1e-3)
+    assert "size is not a human's" in _run(path, "--to", "165cm", "--unit", metres * factor).stdout
 
 
 def test_json_has_exactly_its_keys_and_steps_scale_with_the_legs(clip: Path) -> None:
@@ -235,3 +262,81 @@ def test_real_captures_are_retargeted(
     assert figures["frames"] == frames
     assert isinstance(lengths, dict)
     assert len(lengths["source"]) == len(lengths["avatar"]) == steps
+
+
+def test_a_mirrored_walk_is_mirrored_back_and_named(tmp_path: Path) -> None:
+    """A walk in left-handed axes gives the figures of the walk itself, and a notice."""
+    walk = made_walk(reference_avatar(1.75)).motion
+    here, there = tmp_path / "walk.bvh", tmp_path / "mirrored.bvh"
+    here.write_text(to_bvh(walk))
+    there.write_text(to_bvh(mirrored_skeleton(walk)))
+    right, mirrored = _figures(here, "--to", "165cm"), _figures(there, "--to", "165cm")
+    assert right["notices"] == []
+    (notice,) = mirrored["notices"]
+    assert (notice["rule"], notice["action"]) == ("mirrored", "mended")
+    assert {"what", "value", "valid", "remedy"} < set(notice)
+    assert mirrored["step_heights_m"]["avatar"] == pytest.approx(
+        right["step_heights_m"]["avatar"], abs=1e-4
+    )
+    assert "Left and right are mirrored" in _run(there, "--to", "165cm").stdout
+
+
+def test_the_floor_is_in_the_answer(tmp_path: Path) -> None:
+    """A curved walk whose floor sinks says how deep its feet were, are, and what that cost."""
+    path = tmp_path / "curved.bvh"
+    path.write_text(to_bvh(curved_and_sinking(0.05)))
+    floor = _figures(path, "--to", "165cm")["floor"]
+    assert floor["sunk_m"] > 0.03
+    assert floor["left_m"] <= 0.01
+    assert floor["raised_m"] > floor["mean_raised_m"] > 0.0
+    assert "before the body was raised" in _run(path, "--to", "165cm").stdout
+
+
+def test_locked_feet_stay_above_the_floor(shared_data: Path) -> None:
+    """Toes that point down through the floor lift their foot, and the answer says how far."""
+    clip = shared_data / "motion" / "cmu_bvh" / "05_06.bvh"
+    locked = _figures(clip, "--to", "165cm", "--lock-feet")
+    floor = locked["floor"]
+    assert floor["sunk_m"] > 0.19
+    assert floor["left_m"] <= 0.01
+    assert (floor["raised_m"], floor["mean_raised_m"]) == (0.0, 0.0)
+    assert floor["lifted_m"] == pytest.approx(0.069, abs=0.001)
+    assert locked["foot_slide_m_s"] < 1e-6
+    assert (
+        "single feet lifted by at most 6.9 cm" in _run(clip, "--to", "165cm", "--lock-feet").stdout
+    )
+
+
+def test_a_unit_that_only_the_body_tells_is_named(tmp_path: Path) -> None:
+    """A BVH in inches is 2.54 times as large as in centimetres: the answer says that it was so."""
+    walk = made_walk(reference_avatar(1.75)).motion
+    path = tmp_path / "inches.bvh"
+    small = scaled(walk.rig, 1.0 / 2.54)
+    roots_m = walk.root_positions_m / 2.54
+    path.write_text(to_bvh(replace(walk, rig=small, root_positions_m=roots_m)))
+    found = _figures(path, "--to", "165cm")
+    (notice,) = found["notices"]
+    assert (notice["rule"], notice["action"]) == ("unit", "noted")
+    assert "if the unit is inch, which is 2.54 times as large as in cm" in notice["value"]
+    assert found["conventions"]["length"]["origin"] == "guessed"
+    told = _figures(path, "--to", "165cm", "--unit", "0.0254")
+    assert told["notices"] == []
+    assert told["stride_lengths_m"]["source"] == pytest.approx(found["stride_lengths_m"]["source"])
+
+
+def test_a_map_that_exchanges_the_sides_is_refused(clip: Path, tmp_path: Path) -> None:
+    """A map with left and right exchanged is refused with value and remedy; nothing is written."""
+    other = {"Left": "Right", "Right": "Left"}
+    swapped = {
+        name: name.replace(side, other[side])
+        for name in reference_avatar(1.75).names
+        for side in ("Left", "Right")
+        if side in name
+    }
+    exchanged = tmp_path / "map.json"
+    exchanged.write_text(json.dumps({"Hips": "Hips", **swapped}))
+    out = tmp_path / "out.bvh"
+    told = _refusal(clip, "--to", "165cm", "--joint-map", exchanged, "--out", out)
+    for part in ("exchanges left and right", "Found: 0 % of the knees", "Exchange left and right"):
+        assert part in told
+    assert not out.exists()

@@ -55,10 +55,29 @@ def test_json_names_every_axis_with_gains_figures_and_status() -> None:
     assert 0.0 <= elbow["overshoot_percent"] <= 3.0
     assert 0.0 < elbow["settling_s"] <= 0.2
     assert elbow["relay"]["hysteresis_deg"] == 2.0
+    assert elbow["relay"]["torque_from"] == "ramp"
+    assert (
+        elbow["relay"]["peak_torque_nm"]
+        <= default_configuration().axes[elbow["name"]].max_torque_nm
+    )
+    assert 0.5 < figures["summary"]["greatest_torque_share"] <= 1.0
     assert by_name["SpineX"]["status"] == "locked"
     assert by_name["SpineX"]["overshoot_percent"] is None
     assert figures["summary"]["tuned"] == 8
     assert figures["summary"]["locked"] == 83
+
+
+@pytest.mark.usefixtures("installation")
+def test_only_the_axes_named_are_tuned() -> None:
+    """With `--axis` only that axis is tuned, the others keep their gains, and it can be locked."""
+    figures = _figures("--avatar", "arm", "--axis", "LeftLowerArmY", "--axis", "SpineX")
+    by_name = {axis["name"]: axis for axis in figures["axes"]}
+    assert by_name["LeftLowerArmY"]["status"] == "tuned"
+    assert (by_name["SpineX"]["status"], by_name["LeftHandX"]["status"]) == ("locked", "kept")
+    assert by_name["LeftHandX"]["kp"] == default_configuration().axes["LeftHandX"].kp
+    assert (figures["summary"]["tuned"], figures["summary"]["kept"]) == (1, 7)
+    assert "none of the chosen axes" in _refusal("--avatar", "arm", "--axis", "SpineX")
+    assert "no axis" in _refusal("--axis", "Elbow")
 
 
 def test_a_tuned_configuration_is_written_and_stored_as_versions(installation: Path) -> None:
@@ -80,6 +99,52 @@ def test_a_tuned_configuration_is_written_and_stored_as_versions(installation: P
     )
     repeated = _figures("--avatar", "arm", "--heuristic", "inertia", "--save", "arm-tuned")
     assert repeated["saved"] == "arm-tuned, version 2"
+
+
+@pytest.mark.usefixtures("installation")
+def test_the_relay_takes_the_torque_that_the_user_chooses() -> None:
+    """`--relay-torque` is the relay's torque: of one axis by name, else of all of them."""
+    figures = _figures("--avatar", "arm", "--relay-torque", "0.4", "--relay-torque", "LeftHandZ=2")
+    relays = {axis["name"]: axis["relay"] for axis in figures["axes"] if axis["attempts"] == 1}
+    assert relays["LeftHandZ"]["torque_nm"] == 2.0
+    assert relays["LeftLowerArmX"]["torque_nm"] == 0.4
+    assert {relay["torque_from"] for relay in relays.values()} == {"chosen"}
+    assert figures["options"]["relay_torques_nm"] == {"LeftHandZ": 2.0}
+
+
+@pytest.mark.usefixtures("installation")
+def test_a_relay_torque_above_every_limit_is_refused() -> None:
+    """A torque for all axes that none of them may take is refused before any experiment."""
+    message = _refusal("--avatar", "arm", "--relay-torque", "1e9")
+    assert "a relay torque is 1e+09 N m" in message
+    assert "70% of its torque limit" in message
+
+
+@pytest.mark.usefixtures("installation")
+def test_a_chosen_torque_is_compared_with_the_ramps() -> None:
+    """A chosen torque is noted with the stiffness it gives, and warned of if far worse."""
+    by_ramp = {axis["name"]: axis for axis in _figures("--avatar", "arm")["axes"]}
+    stiff = by_ramp["LeftUpperArmZ"]
+    weak = f"LeftUpperArmZ={stiff['relay']['torque_nm'] / 30:.4f}"
+    figures = _figures("--avatar", "arm", "--relay-torque", weak, "--save", "weak")
+    found = {axis["name"]: axis for axis in figures["axes"]}
+    soft = found["LeftUpperArmZ"]
+    assert soft["kp"] < stiff["kp"] / 5
+    assert "chosen by hand" in soft["note"]
+    assert f"which gives kp {soft['kp']:.4g} N m/rad" in soft["note"]
+    assert f"the ramp gives kp {stiff['kp']:.4g} N m/rad" in soft["note"]
+    assert f"comes to rest {abs(soft['steady_error_deg']):.2f} deg" in soft["warning"]
+    assert f"settles in {soft['settling_s']:.3f} s" in soft["warning"]
+    assert {axis["warning"] for name, axis in found.items() if name != "LeftUpperArmZ"} == {""}
+    with opened_database("test") as database, database.reading() as db:
+        note = newest_version(db, avatar_by_key(db, "weak")).note
+    assert "chosen by hand: LeftUpperArmZ" in note
+    elbow = by_ramp["LeftLowerArmY"]["relay"]
+    assert elbow["swing_deg"] == pytest.approx(8.0)
+    same = f"LeftLowerArmY={elbow['torque_nm']:.6f}"
+    text = _run("--avatar", "arm", "--relay-torque", same).stdout
+    assert "chosen by hand" in text
+    assert "Warning" not in text
 
 
 @pytest.mark.usefixtures("installation")
@@ -170,6 +235,9 @@ def test_an_unknown_avatar_is_refused_with_the_existing_ones() -> None:
         (["--mass", "0"], "mass"),
         (["--attempts", "0"], "from 1"),
         (["--capture", "nowhere.bvh"], "nowhere.bvh"),
+        (["--relay-torque", "strong"], "LeftUpperLegX=20"),
+        (["--relay-torque", "LeftElbow=3"], "which is no axis"),
+        (["--relay-torque", "3", "--evaluate"], "no relay experiment"),
         (["--save", "Not A Key"], "lower-case letter"),
         (["--evaluate", "--save", "arm"], "changes nothing"),
     ],

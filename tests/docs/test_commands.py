@@ -24,6 +24,7 @@ from typer.testing import CliRunner
 
 from app.adapters.captures.bvh_export import to_bvh
 from app.cli.commands import app
+from app.cli.tracking.inputs import write_poses
 from app.clock import Clock
 from app.features.movement.avatar import NewAvatar, create_avatar
 from app.protocol.avatar import file_of
@@ -32,10 +33,11 @@ from app.science.retargeting import reference_avatar
 from app.science.walking.synthetic import POPULATIONS, person_of, straight_path, walk_along
 from tests.benchmarks.__main__ import NAMES, parser
 from tests.docs.commands import Command, Fate, commands, mentions
-from tests.docs.markdown import REPOSITORY
+from tests.docs.markdown import DOCS, REPOSITORY
 from tests.features.lab import Lab as RunningLab
 from tests.features.lab import running_lab
 from tests.rehearsal.performed import Lengths
+from tests.science.alignment.rooms import OPTICAL, looking_around, recorded, some_room
 from tests.science.retargeting.walks import made_walk
 from tests.support.lan import LanServer
 from tests.support.server import ADMIN_PASSWORD, LiveServer, free_port
@@ -73,7 +75,9 @@ class Lab:
             r"02_01\.amc": self._amc,
             r"data\.csv": self._tidy,
             r"walks/": self._walks,
+            r"headset\.csv": self._two_systems,
             r"answers\.csv": self._answers,
+            r"my-scene\.yaml": self._scene,
         }.items():
             if re.search(pattern, command.text):
                 make()
@@ -109,6 +113,19 @@ class Lab:
                 rows = [f"{number},{t:.4f},{x:.4f},{y:.4f}" for t, (x, y) in moments]
                 text = _table("subject,time_s,x_m,y_m", rows)
                 (folder / f"walker-{number}-{length:g}.csv").write_text(text)
+
+    def _two_systems(self) -> None:
+        rng = np.random.default_rng(3)
+        headset, tracker = recorded(looking_around(12.0), some_room(rng), OPTICAL, rng)
+        for name, poses in (("headset", headset), ("tracker", tracker), ("foot", tracker)):
+            write_poses(self.folder / f"{name}.csv", poses)
+
+    def _scene(self) -> None:
+        shown = re.search(
+            r"```yaml\n(key: my-scene.*?)```", (DOCS / "crossing.md").read_text(), re.S
+        )
+        assert shown is not None
+        (self.folder / "my-scene.yaml").write_text(shown[1])
 
     def _answers(self) -> None:
         items = [f"q{number}" for number in range(1, 15)]
@@ -155,6 +172,7 @@ PREPARED = {"./run restore /media/usb/2026-11-21.reembody": "an empty data folde
 """The state that a page requires before a command."""
 BRIEF = {
     r"\./run walk fit": FAST_WALKING,
+    r"\./run pilot power": ("--sets", "20"),
     # The last one wins: an avatar of which only one arm moves.
     r"\./run tune": ("--avatar", "arm"),
 }
@@ -292,7 +310,7 @@ def test_every_command_has_an_example_that_runs() -> None:
     """Every command of `reembody` has an example in the docs that the usual run executes."""
     shown = {
         command.words[1]
-        if command.words[1] not in {"tls", "walk"}
+        if command.words[1] not in {"avatar", "crossing", "pilot", "tls", "tracking", "walk"}
         else " ".join(command.words[1:3])
         for command in commands()
         if command.fate is Fate.RUN and command.words[0] == "./run" and len(command.words) > 1

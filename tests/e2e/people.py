@@ -7,7 +7,7 @@ from playwright.sync_api import Page, expect
 
 from tests.support.server import ADMIN_PASSWORD
 
-PATIENCE_MS = 30_000
+PATIENCE_MS = 60_000
 PICTURE_HIDDEN = "localStorage.setItem('reembody.cockpit.live', 'false')"
 """For consoles without the live picture: software rendering would use a whole core."""
 

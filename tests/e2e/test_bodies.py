@@ -1,5 +1,6 @@
 """A browser test of bodies: uploaded, looked at, checked, named, and worn by a configuration."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -7,7 +8,7 @@ from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter
 from tests.support.browser import PageWatch
-from tests.support.humanoid_files import dog_file, humanoid_file
+from tests.support.humanoid_files import dog_file, humanoid_file, with_ktx2
 from tests.support.humanoid_model import Model, without
 from tests.support.server import LiveServer
 
@@ -22,12 +23,15 @@ def test_a_body_is_uploaded_checked_and_named(
 ) -> None:
     """A dropped model is measured and drawn, its missing fingers are listed, and it is named once.
 
-    A model of a dog is refused with what it lacks.
+    A model of a dog is refused with what it lacks. The model's texture is a KTX2 picture.
     """
     page_watch.allow(r"status of 422")
     page = page_factory((1180, 820))
     Experimenter(page, running_server.url).log_in()
-    (tmp_path / "Worn once.glb").write_bytes(humanoid_file(Model(parts=without("Little"))))
+    # A texture that could not be read would be an error of the page.
+    (tmp_path / "Worn once.glb").write_bytes(
+        humanoid_file(Model(parts=without("Little"), edit=with_ktx2))
+    )
     (tmp_path / "dog.glb").write_bytes(dog_file())
     page.goto(f"{running_server.url}/#/bodies")
     expect(page.get_by_role("heading", name="Three statures")).to_be_visible(timeout=PATIENCE_MS)
@@ -56,6 +60,10 @@ def test_a_body_is_uploaded_checked_and_named(
     page.get_by_role("link", name="Bodies").first.click()
     expect(page.get_by_role("list", name="Bodies")).to_contain_text("worn_once")
     assert axe(page) == []
+    # Of the figures at three statures: those of a generated walk.
+    rows = page.get_by_role("row").filter(has=page.get_by_role("rowheader"))
+    expect(rows.first).to_contain_text("130 cm")
+    expect(rows.first.get_by_role("cell").first).to_have_text(re.compile(r"\d+\.\d"))
     page.evaluate("scrollTo(0, 0)")
     screenshot(page, "bodies")
     page.get_by_role("link", name="neutral").click()

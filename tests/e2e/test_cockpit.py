@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable
 
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, ViewportSize, expect
 
 from app.features.movement.avatar import SHIPPED, version_of
 from app.models import StudySession
@@ -13,8 +13,14 @@ from tests.e2e.wearer import Wearer
 from tests.features.lab import ok
 from tests.features.record.headset.site import Site
 from tests.protocol.helpers import edited
+from tests.support.browser import in_both_schemes
 
 PRESSED_EVERY_MS = 800.0
+LONGER, TASK_S = "cockpit-study", 60
+SIZES: tuple[ViewportSize, ...] = (
+    {"width": 1280, "height": 800},
+    {"width": 1180, "height": 820},
+)
 
 
 def test_a_start_needs_a_reason_and_the_movement_is_drawn(
@@ -23,10 +29,14 @@ def test_a_start_needs_a_reason_and_the_movement_is_drawn(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Starting without a tablet asks for a reason; boxes and a body with skin move on the page."""
-    if headset_site.operator.get(f"/api/studies/{STUDY}").status_code == 404:
-        ok(headset_site.operator.post("/api/studies", json={"yaml": short_study()}))
-    view = ok(headset_site.operator.post(f"/api/studies/{STUDY}/sessions", json={}))
+    """Starting without a tablet asks for a reason; boxes and a body with skin move on the page.
+
+    Clock, buttons and picture are on the screen together, running and paused; at the end the
+    receipt says what is stored.
+    """
+    yaml = short_study(TASK_S).replace(f"key: {STUDY}", f"key: {LONGER}", 1)
+    ok(headset_site.operator.post("/api/studies", json={"yaml": yaml}))
+    view = ok(headset_site.operator.post(f"/api/studies/{LONGER}/sessions", json={}))
     session_id = str(view["id"])
     with headset_site.database.writing() as db:
         # The scripted headset does not simulate; the console draws the body all the same.
@@ -65,10 +75,51 @@ def test_a_start_needs_a_reason_and_the_movement_is_drawn(
         expect(page.locator("[data-drawn=skin]")).to_be_visible(timeout=PATIENCE_MS)
         page.keyboard.press("1")
         expect(page.get_by_role("radio", name="First person")).to_be_checked()
-        assert axe(page) == []
-        screenshot(page, "cockpit-live")
+        for state in ("Running", "Paused"):
+            if state == "Paused":
+                headset_site.command(session_id, "pause")
+            expect(page.locator("[data-tour=step]")).to_contain_text(state)
+            for size in SIZES:
+                page.set_viewport_size(size)
+                for shown in (page.get_by_role("timer"), _skip(page), picture):
+                    _sees_whole(shown, size)
+        for size in SIZES:
+            page.set_viewport_size(size)
+            for scheme in in_both_schemes(page):
+                assert axe(page) == [], (size, scheme)
+                screenshot(page, f"cockpit-live-{size['width']}-{scheme}")
         headset_site.command(session_id, "abort", reason="seen enough")
+        _reads_the_receipt(page, axe, screenshot)
     assert wearer.error is None
+
+
+def _skip(page: Page) -> Locator:
+    """Return the button that skips the step, one of the last among the controls."""
+    return page.locator("[data-tour=step]").get_by_role("button", name="Skip")
+
+
+def _sees_whole(shown: Locator, size: ViewportSize) -> None:
+    """Require that something is on the screen as a whole without scrolling."""
+    box = shown.bounding_box()
+    assert box is not None
+    assert box["y"] >= 0
+    assert box["y"] + box["height"] <= size["height"], (shown, box)
+
+
+def _reads_the_receipt(
+    page: Page, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
+) -> None:
+    """Open the receipt by its button: both bodies and the reports, with nothing missing."""
+    page.get_by_role("button", name="Receipt of the record").click()
+    drawer = page.get_by_role("dialog", name="Receipt of the record")
+    for stream in ("Participant's body", "Avatar's body", "Reports"):
+        row = drawer.get_by_role("row", name=stream)
+        expect(row).to_contain_text(re.compile(r"1[1-9][\d,]* (frames|reports)"))
+    expect(drawer).to_contain_text("every hash follows from the one before")
+    for scheme in in_both_schemes(page):
+        assert axe(page) == [], scheme
+        screenshot(page, f"receipt-{scheme}")
+    page.keyboard.press("Escape")
 
 
 def test_an_operator_changes_the_avatar_by_keyboard(

@@ -3,12 +3,13 @@
 from collections.abc import Callable
 
 import pytest
+import yaml
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter
 from tests.features.design.instruments.test_library import OWN
-from tests.support.browser import ColorScheme
-from tests.support.server import LiveServer
+from tests.support.browser import ColorScheme, in_both_schemes
+from tests.support.server import ADMIN_PASSWORD, LiveServer
 from tests.support.traffic import Traffic
 
 expect.set_options(timeout=PATIENCE_MS)
@@ -104,6 +105,51 @@ def test_a_study_from_template_to_second_version(
     expect(page.get_by_role("row", name="conditions[1].latency_ms")).to_be_visible()
     assert axe(page) == []
     screenshot(page, "study-versions")
+
+
+def test_the_curves_of_simulated_answers_are_edited_and_stored(
+    writer: Writer,
+    live_server: LiveServer,
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], object],
+) -> None:
+    """An item's curve is chosen, an unknown item is refused at its field, and a reload keeps it."""
+    page = writer.page
+    writer.open_tab(STUDY, "edit")
+    writer.sees_no_problem()
+    writer.open_section("Rehearsals")
+    page.get_by_role("button", name="Simulated answers").click()
+    page.get_by_role("combobox", name="Instrument to add").fill("karas2020")
+    page.keyboard.press("Enter")
+    for item in ("q9", "q99"):
+        page.get_by_role("combobox", name="Item to add to karas2020").fill(item)
+        page.keyboard.press("Enter")
+    problem = page.get_by_role("button", name="simulation.aspects.karas2020.q99")
+    expect(problem).to_contain_text("'karas2020' has no Likert item 'q99'")
+    expect(page.get_by_role("button", name="Save as a version")).to_be_disabled()
+    for scheme in in_both_schemes(page):
+        assert axe(page) == [], scheme
+        screenshot(page, f"editor-rehearsals-problem-{scheme}")
+    page.get_by_role("button", name="Clear: q99").click()
+    page.get_by_role("combobox", name="q9", exact=True).click()
+    page.get_by_role("option", name="simultaneity").click()
+    writer.sees_no_problem()
+    page.set_viewport_size({"width": 1180, "height": 820})
+    for scheme in in_both_schemes(page):
+        assert axe(page) == [], scheme
+        screenshot(page, f"editor-rehearsals-{scheme}")
+    page.get_by_role("button", name="Save as a version").click()
+    expect(page.get_by_text("Saved as version 2")).to_be_visible()
+    page.reload()
+    writer.open_section("Rehearsals")
+    expect(page.get_by_role("combobox", name="q9")).to_have_value("simultaneity")
+    assert axe(page) == []
+    with live_server.client() as admin:
+        admin.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD})
+        stored = admin.get(f"/api/studies/{STUDY}").json()["yaml"]
+    assert yaml.safe_load(stored)["simulation"] == {
+        "aspects": {"karas2020": {"q9": "simultaneity"}}
+    }
 
 
 def test_unsaved_changes_are_not_lost(writer: Writer) -> None:

@@ -153,6 +153,15 @@ def test_a_page_that_a_role_may_not_open_says_so(lab: BlindedLab, page_factory: 
     expect(analyst.get_by_text("View only")).to_be_visible()
     expect(analyst.get_by_role("button", name="Start session")).to_have_count(0)
     expect(analyst.get_by_role("button", name="Show condition")).to_have_count(0)
+    analyst.goto(f"{lab.server.url}/#/avatars/standard/1")
+    expect(analyst.get_by_role("link", name="Open version 1")).to_be_visible(timeout=PATIENCE_MS)
+    analyst.get_by_role("tab", name="Joints").click()
+    analyst.get_by_text("Joint per part", exact=True).click()
+    expect(analyst.get_by_role("row", name="left knee")).to_be_visible()
+    expect(analyst.get_by_role("button", name="Save", exact=True)).to_have_count(0)
+    # It has no live feed that ends, and asks all the same.
+    analyst.context.clear_cookies()
+    expect(analyst.get_by_text("You have been signed out")).to_be_visible(timeout=PATIENCE_MS)
 
 
 @pytest.mark.parametrize("scheme", ["light", pytest.param("dark", marks=pytest.mark.long)])

@@ -42,8 +42,9 @@ def test_a_replay_is_synchronised_with_its_events(
     phases: list[Phase],
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
-    """A replay wears the session's body, follows its events, and a link reopens a moment or two."""
+    """A replay wears its body, remembers its camera, and a link reopens a moment or two."""
     first, second = phases
     url = headset_site.server.url
     page = page_factory()
@@ -65,6 +66,15 @@ def test_a_replay_is_synchronised_with_its_events(
     expect(page.get_by_role("button", name="Pause (space)")).to_be_visible()
     expect(times).not_to_have_attribute("data-time", "10.000")
     page.keyboard.press("Space")
+    cameras = page.get_by_role("radiogroup", name="Camera")
+    page.keyboard.press("C")
+    page.keyboard.press("C")
+    expect(cameras.get_by_role("radio", name="Eyes")).to_be_checked()
+    screenshot(page, "replay-first-person")
+    page.reload()
+    expect(cameras.get_by_role("radio", name="Eyes")).to_be_checked(timeout=PATIENCE_MS)
+    page.keyboard.press("C")
+    expect(cameras.get_by_role("radio", name="Free")).to_be_checked()
     page.get_by_role("tab", name="Answers after this phase").click()
     expect(page.get_by_role("tabpanel").get_by_role("heading").first).to_be_visible()
     page.get_by_text("Stick figure", exact=True).click()

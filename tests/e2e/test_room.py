@@ -9,7 +9,7 @@ import yaml
 from numpy.typing import NDArray
 
 from tests.support.browser import ContextFactory
-from tests.support.room import EVERYTHING, IN_FRONT, MOMENTS, ROOT, opened_room
+from tests.support.room import EVERYTHING, IN_FRONT, MOMENTS, PAUSED, ROOT, opened_room
 
 MOST_CALLS, MOST_TRIANGLES = 20, 100_000
 STUDY = ROOT / "study_configs/reembodiment-latency.yaml"
@@ -40,9 +40,14 @@ def test_an_eye_takes_few_draw_calls_and_never_changes_its_target(
 ) -> None:
     """Everything that can be seen at once takes at most 20 draw calls, into one framebuffer."""
     with opened_room(new_context(), bundle, study) as room:
-        drawn = room.draw(EVERYTHING)
+        drawn = room.draw_fading(EVERYTHING)
+        without = room.draw_fading({**EVERYTHING, "panel": None})
+        stopping = room.draw_fading({**EVERYTHING, "panel": "stopping"})
+        paused = room.draw_fading(PAUSED)
 
-        assert drawn.calls <= MOST_CALLS
+        assert max(drawn.calls, stopping.calls) <= MOST_CALLS
+        assert min(drawn.calls, stopping.calls) > without.calls
+        assert paused.calls < without.calls
         assert 20_000 < drawn.triangles <= MOST_TRIANGLES
         assert drawn.target_switches == 0
 

@@ -11,6 +11,7 @@ from tests.e2e.people import PATIENCE_MS, Experimenter, Participant
 from tests.faults.figures import note
 from tests.features.builders import STUDY, SessionSpec, build_session
 from tests.features.lab import key, ok
+from tests.features.record.self_tests.reports import report
 from tests.protocol.helpers import edited
 from tests.support.browser import PageWatch
 from tests.support.server import ADMIN_PASSWORD, LiveServer
@@ -71,6 +72,18 @@ def write_everywhere(api: httpx2.Client, server: LiveServer) -> str:
     return session_id
 
 
+def write_self_test(api: httpx2.Client, server: LiveServer, session_id: str) -> None:
+    """Store a headset's self-test with scripts in every text of its report."""
+    path = f"/api/sessions/{session_id}/pairings"
+    code = ok(api.post(path, json={"device": "headset"}))["code"]
+    device = {"user_agent": EVIL[:500], "name": EVIL[:200], "inputs": ["hands"]}
+    body = report(device=device, page__errors=[EVIL[:200]])
+    with server.client() as headset:
+        token = ok(headset.post("/api/devices/pair", json={"code": code}))["token"]
+        headers = {"authorization": f"Bearer {token}"}
+        ok(headset.post("/api/vr/self-tests", json=body, headers=headers))
+
+
 def _note(view: dict[str, Any]) -> dict[str, Any]:
     about = {"command_id": key(), "expected_version": view["version"], "type": "note"}
     return {**about, "text": EVIL}
@@ -84,6 +97,7 @@ def test_entered_scripts_are_never_executed(
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         session_id = write_everywhere(api, running_server)
         joined = ok(api.post(f"/api/studies/{HOSTILE}/sessions", json={"kind": "test"}))
+        write_self_test(api, running_server, joined["id"])
         shown = ok(api.post(f"/api/sessions/{joined['id']}/pairings", json={"device": "tablet"}))
     experimenter = Experimenter(page_factory(), running_server.url)
     page = experimenter.page

@@ -125,6 +125,7 @@ def test_ten_minutes_offline_and_a_killed_browser_lose_nothing(
     with life() as visit:
         visit.open(network=True)
         visit.sees_form()
+        visit.page.wait_for_function(CACHED, timeout=PATIENCE_MS)
         visit.cut_off()
         visit.choose()
         visit.press("Next")

@@ -6,8 +6,8 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS
-from tests.features.movement.walking.walkers import FLOOR, SMALL
-from tests.support.browser import ContextFactory, PageWatch
+from tests.features.movement.walking.walkers import FLOOR, SMALL, table
+from tests.support.browser import ContextFactory, PageWatch, in_both_schemes
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 
@@ -77,3 +77,40 @@ def test_a_drawn_path_gets_a_distribution_of_durations(
     page.get_by_label("x of point 2 in metres").fill("0")
     page.get_by_label("y of point 2 in metres").fill("-1")
     expect(page.get_by_text("inside obstacle 'car'")).to_be_visible(timeout=PATIENCE_MS)
+
+
+def test_walks_at_an_unlikely_pace_are_doubted_in_the_list(
+    server: LiveServer,
+    new_context: ContextFactory,
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], object],
+) -> None:
+    """A set whose times are wrong says so beside its figures; a set as people walk does not."""
+    context = new_context((1280, 800))
+    rows = [line.split(",") for line in table(5, 4).decode().splitlines()]
+    hurried = [rows[0], *([who, str(0.45 * float(t)), *place] for who, t, *place in rows[1:])]
+    with server.client() as admin:
+        admin.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD})
+        for title, lines in (("At their pace", rows), ("At another rate", hurried)):
+            text = "\n".join(",".join(line) for line in lines)
+            query = {"name": "tracks.csv", "title": title}
+            sent = admin.post("/api/walking/walk-sets/tracks", params=query, content=text.encode())
+            assert sent.status_code == 201, sent.text
+        context.add_cookies(
+            [
+                {"name": cookie.name, "value": cookie.value or "", "url": server.url}
+                for cookie in admin.cookies.jar
+            ]
+        )
+    page = context.new_page()
+    page.goto(f"{server.url}/#/walking/models")
+    doubted = page.get_by_role("row", name="At another rate")
+    expect(doubted).to_contain_text("Check the unit of x and y", timeout=PATIENCE_MS)
+    expect(page.get_by_role("row", name="At their pace")).not_to_contain_text(
+        "Check the unit of x and y"
+    )
+    for width, height in ((1280, 800), (1180, 820)):
+        page.set_viewport_size({"width": width, "height": height})
+        for scheme in in_both_schemes(page):
+            assert axe(page) == [], (width, scheme)
+            screenshot(page, f"walk-sets-{width}-{scheme}")

@@ -2,13 +2,15 @@
 
 Each status has its own study. The keys, names and latencies of its conditions are canaries: they
 occur nowhere else, so anything found in a response can be traced to one session, even where a
-response mixes studies. The search covers the conditions' keys, names and bodies, latencies in ms
-and s, joint errors that were set equal to the latency (in degrees), and the hashes of the event
-log, against which a guessed latency could be checked. It does not cover that a delay can be
-computed from frames; instead, the avatar's frames themselves count as a leak.
+response mixes studies. The search covers the conditions' keys, names and bodies, the hashes of the
+models that the headset built for these bodies, latencies in ms and s, joint errors that were set
+equal to the latency (in degrees), and the hashes of the event log, against which a guessed latency
+could be checked. It does not cover that a delay can be computed from frames; instead, the avatar's
+frames themselves count as a leak.
 """
 
 import asyncio
+import hashlib
 import io
 import json
 import math
@@ -153,13 +155,14 @@ def _build(lab: Lab, db: Session, number: int, world: str) -> Canaried:
         for one in sessions
         for row in db.scalars(select(SessionEvent).where(SessionEvent.session_id == one.id))
     ]
+    models = [model_hash(body), model_hash(f"{body} as MuJoCo model")]
     degrees = [f"{math.degrees(one / MS_PER_S):.4f}"[:-1] for one in (small, large)]
     return Canaried(
         world,
         key,
         tuple(one.id for one in sessions),
         tuple(one.participant_id for one in sessions),
-        canaries((small, large), more=[*words, body, *hashes, *degrees]),
+        canaries((small, large), more=[*words, body, *models, *hashes, *degrees]),
     )
 
 
@@ -180,6 +183,7 @@ def _session(db: Session, key: str, world: str, body: str, code: str = "P-0001")
     phases = list(db.scalars(select(Phase).where(Phase.session_id == session.id)))
     for row in phases:
         row.body = body
+    built = _built(db, session, body)
     prepared = [
         e.PhasePrepared(
             step=row.step_index,
@@ -196,15 +200,42 @@ def _session(db: Session, key: str, world: str, body: str, code: str = "P-0001")
         db,
         session_id=session.id,
         version=2,
-        events=prepared,
+        events=[built, *prepared],
         actor="account:admin",
         command_id=None,
         clock=clock,
     )
-    session.version = 2 + len(prepared)
+    session.version = 3 + len(prepared)
     session.snapshot = state_to_json(replace(state, version=session.version))
     db.flush()
     return session
+
+
+def _built(db: Session, session: StudySession, body: str) -> e.AvatarBuilt:
+    """Store the avatar that the headset built for a condition's body, and return its event."""
+    content = {
+        "stature_m": 1.7,
+        "segments_m": {},
+        "body": body,
+        "humanoid": model_hash(body),
+        "model": f'<mujoco model="{body}"/>',
+        "model_hash": model_hash(f"{body} as MuJoCo model"),
+    }
+    made = store_content(
+        db, session_id=session.id, kind="avatar", body=content, by="headset", now=NOW
+    )
+    assert isinstance(made, ContentRef)
+    return e.AvatarBuilt(
+        configuration_hash=model_hash("configuration"),
+        content_id=made.content_id,
+        content_hash=made.content_hash,
+        body=body,
+    )
+
+
+def model_hash(name: str) -> str:
+    """Return the hash of a made-up model: its digits occur nowhere else."""
+    return hashlib.sha256(name.encode()).hexdigest()
 
 
 def _measured(db: Session, session: StudySession) -> None:
@@ -302,6 +333,7 @@ def _unpacked(route: str, one: Canaried, body: bytes) -> Iterator[tuple[str, byt
             if name.startswith("samples/") and _has_avatar(content):
                 yield f"{route} {name}, the avatar's frames", _mark(one)
             yield f"{route} {name}", content
+            yield f"{route} name of a file", name.encode()
 
 
 def _has_avatar(samples: bytes) -> bool:

@@ -87,7 +87,8 @@ class Outage:
     async def _outage(self, client: AsyncClient, group: asyncio.TaskGroup) -> None:
         planned = await self._new_session(client)
         listening = asyncio.create_task(self._listen(client, planned))
-        await asyncio.sleep(LOOK_EVERY_S)
+        # What the page receives begins with the status before the outage.
+        await self._until(client, lambda _: self.watch.console == ["ok"])
         began_s = time.monotonic()
         self.begin()
         try:
@@ -111,6 +112,8 @@ class Outage:
         started = await self._command(client, planned, "start")
         assert started.status_code == 200, started.text
         self.watch.restart_s = time.monotonic() - ended_s
+        # The page is told over another connection, on a slow machine a moment later.
+        await self._until(client, lambda _: self.watch.console[-1:] == ["ok"])
         listening.cancel()
 
     async def _listen(self, client: AsyncClient, session_id: str) -> None:

@@ -2,9 +2,11 @@
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+import threading
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
+from queue import Queue
 
 from tests.support.server import free_port
 
@@ -57,7 +59,11 @@ class Relay:
             self._tasks.discard(task)
 
     async def _relay(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        far_reader, far_writer = await asyncio.open_connection("127.0.0.1", self.target_port)
+        try:
+            far_reader, far_writer = await asyncio.open_connection("127.0.0.1", self.target_port)
+        except OSError:  # The server is down.
+            writer.transport.abort()
+            return
         pair = (writer, far_writer)
         self._writers.update(pair)
         ways = (_pass(reader, far_writer), _pass(far_reader, writer))
@@ -69,6 +75,53 @@ class Relay:
                 one.transport.abort()
             self._writers.difference_update(pair)
             await asyncio.gather(*tasks, return_exceptions=True)
+
+
+class RelayThread:
+    """A relay that runs in a thread of its own, for tests that are not asynchronous themselves."""
+
+    def __init__(self, relay: Relay, loop: asyncio.AbstractEventLoop) -> None:
+        self._relay, self._loop = relay, loop
+
+    @property
+    def url(self) -> str:
+        """Return the URL at which browsers reach the server; they treat the name as secure."""
+        return f"http://localhost:{self._relay.port}"
+
+    @contextmanager
+    def outage(self) -> Iterator[None]:
+        """Reject and cut all connections while the block runs."""
+        self._loop.call_soon_threadsafe(self._set, False)
+        try:
+            yield
+        finally:
+            self._loop.call_soon_threadsafe(self._set, True)
+
+    def _set(self, up: bool) -> None:  # noqa: FBT001 - passed on by the loop
+        self._relay.up = up
+        if not up:
+            self._relay.cut()
+
+
+@contextmanager
+def relayed_in_thread(target_port: int) -> Iterator[RelayThread]:
+    """Run a relay in front of a server in a thread while the block runs."""
+    ready: Queue[tuple[RelayThread, asyncio.Event]] = Queue()
+
+    async def run() -> None:
+        async with relayed(target_port) as relay:
+            over = asyncio.Event()
+            ready.put((RelayThread(relay, asyncio.get_running_loop()), over))
+            await over.wait()
+
+    thread = threading.Thread(target=asyncio.run, args=(run(),), daemon=True)
+    thread.start()
+    relay, over = ready.get(timeout=10.0)
+    try:
+        yield relay
+    finally:
+        relay._loop.call_soon_threadsafe(over.set)
+        thread.join(timeout=10.0)
 
 
 async def _pass(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:

@@ -8,10 +8,11 @@ take no time.
 import asyncio
 import json
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 from pydantic import SecretStr
 from sqlalchemy import event, select
@@ -36,7 +37,10 @@ from app.settings import Settings
 from app.wire import MalformedBatchError
 
 Json = dict[str, Any]
+T = TypeVar("T")
 TOGETHER = 20
+LAST_TURNS = 60
+"""Turns of the event loop in which the server answers the last messages before the line is cut."""
 
 
 @dataclass
@@ -73,6 +77,19 @@ class PromptWriter(TelemetryWriter):
             self._store_or_wait(arrivals)
 
 
+class PromptExecutor(ThreadPoolExecutor):
+    """Do at once what the application leaves to a thread, so that no order depends on threads."""
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """Call the function in the caller's thread."""
+        done = Future[T]()
+        try:
+            done.set_result(fn(*args, **kwargs))
+        except Exception as error:  # noqa: BLE001 - a thread pool keeps every error, too
+            done.set_exception(error)
+        return done
+
+
 @dataclass
 class Socket:
     """The server's end of a socket: yields the headset's messages and collects the server's."""
@@ -89,7 +106,7 @@ class Socket:
         said = next(self.says, None)
         if said is None:
             self.hangs_up()
-            for _ in range(4):
+            for _ in range(LAST_TURNS):
                 await asyncio.sleep(0)
             return {"type": "websocket.disconnect", "code": 1000}
         if isinstance(said, bytes):
@@ -198,6 +215,7 @@ class Site:
         token = self.token(session_id)
 
         async def serve() -> None:
+            asyncio.get_running_loop().set_default_executor(PromptExecutor())
             asked = cast("WebSocket", socket)
             connection = HeadsetConnection(asked, self.context, self.writer, session_id, token)
             try:

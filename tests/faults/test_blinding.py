@@ -291,6 +291,8 @@ def test_every_column_named_after_a_condition_is_emptied_or_harmless() -> None:
     harmless = {
         *("study_content_hash", "avatar_configuration_hash", "slot_block", "slot_replicate"),
         *("latency_off", "latency_samples", "out_of_order", "backwards", "flagged"),
+        # Of a headset's self-test: the configuration's own body at 1.75 m, whatever the condition.
+        "model_hash",
     }
     assert told - EMPTIED <= harmless
     assert told >= EMPTIED

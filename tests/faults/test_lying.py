@@ -120,6 +120,27 @@ def test_the_highest_epoch_does_not_block_later_runs(site: Site) -> None:
         assert {one.kind for one in doubts_of(db, session_id)} == {"epoch", "observed"}
 
 
+def test_a_run_that_comes_back_with_other_abilities_is_recorded(site: Site) -> None:
+    """A reconnecting run that lost or gained an ability puts the session in doubt; a same one not.
+
+    What a run records follows from its abilities, so that two clients share one epoch there.
+    """
+    session_id = site.join(step=HAND)
+    now = site.context.clock.utc_now()
+    with site.context.database.writing() as db:
+        told = Hello(protocol=1, client="headset", fingers=True, goals=True)
+        epoch = welcome(db, session_id, told, now).epoch
+        welcome(db, session_id, told.model_copy(update={"epoch": epoch}), now)
+    with site.context.database.reading() as db:
+        assert not doubts_of(db, session_id)
+    with site.context.database.writing() as db:
+        other = Hello(protocol=1, client="headset", fingers=True, panels=True, epoch=epoch)
+        welcome(db, session_id, other, now)
+    with site.context.database.reading() as db:
+        (doubt,) = doubts_of(db, session_id)
+    assert "came back with other abilities: without goals, with panels" in doubt.words
+
+
 def test_a_client_that_takes_over_gets_no_impossible_active_time(site: Site) -> None:
     """A client that takes over is not given the impossible active time of an earlier batch."""
     told = play(site, 4, "a batch far ahead of time")

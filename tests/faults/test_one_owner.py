@@ -12,6 +12,7 @@ import subprocess
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import httpx2
 import pytest
@@ -35,6 +36,8 @@ HAND = 2
 """The id of the first task phase."""
 CREDENTIALS = {"username": "admin", "password": ADMIN_PASSWORD}
 ANSWERS_WITHIN_S = 60.0
+SOFT = '{"operation": "set_gains", "targets": ["left_arm"], "kp_nm_per_rad": 50}'
+HEADLESS = '{"operation": "remove_parts", "targets": ["Head"]}'
 
 
 @pytest.fixture
@@ -122,10 +125,7 @@ def paused(payloads: Sequence[str]) -> int:
 def test_commands_that_write_are_refused_and_those_that_read_are_not(
     live_server: LiveServer, tmp_path: Path
 ) -> None:
-    """While a server runs, commands that need the data exclusively are refused and others work.
-
-    The commands that need it are those that restore a backup or store a tuning.
-    """
+    """While a server runs, a restore and a second server are refused, and other commands work."""
     session_id, file = running_session(live_server), tmp_path / "all.reembody"
     works = [
         ("backup", file),
@@ -133,6 +133,7 @@ def test_commands_that_write_are_refused_and_those_that_read_are_not(
         ("export", "--study", KEY, "--kind", "test", "--to", tmp_path / "export"),
         ("token",),
         ("tls", "show"),
+        ("avatar", "edit", "standard", "--operation", SOFT, "--save", "soft"),
     ]
     for arguments in works:
         said = reembody(live_server, *arguments)
@@ -141,7 +142,6 @@ def test_commands_that_write_are_refused_and_those_that_read_are_not(
     before = event_count(live_server, session_id)
     for arguments in (
         ("restore", file, "--replace", "--even-though-active"),
-        ("tune", "--save", "mine"),
         ("rehearse", "--data", live_server.data_dir),
     ):
         said = reembody(live_server, *arguments)
@@ -149,6 +149,47 @@ def test_commands_that_write_are_refused_and_those_that_read_are_not(
         assert f"process id {live_server.pid} on port {live_server.port}" in said.err
         assert "Traceback" not in said.err
     assert event_count(live_server, session_id) == before
+
+
+def test_avatars_are_read_and_stored_through_a_server_and_beside_it(
+    live_server: LiveServer, tmp_path: Path
+) -> None:
+    """A command stores in its own installation and at a URL alike, and the other one sees it."""
+    url = f"http://127.0.0.1:{live_server.port}"
+    at = ("--url", url, "--token", reembody(live_server, "token").out.strip())
+
+    def avatar(*arguments: object) -> dict[str, Any]:
+        return reembody(live_server, "avatar", *arguments, "--json").json
+
+    soft = tmp_path / "soft.json"
+    beside = avatar("edit", "standard", "--operation", SOFT, "--save", "beside", "--out", soft)
+    asked = avatar("edit", "standard", "--operation", SOFT, "--save", "asked", *at)
+    assert asked["configuration"] == beside["configuration"]
+    assert avatar("diff", "asked", "beside", *at)["same"]
+    stiff = SOFT.replace("50", "900")
+    assert (
+        avatar("edit", "beside", "--operation", stiff, "--save", "beside", *at)["saved"]["version"]
+        == 2
+    )
+    back = avatar("save", soft, "beside", "--based-on", "2", "--note", "back", *at)
+    assert back["version"] == 3
+    assert avatar("diff", "beside@1", "beside@3")["same"]
+    listed = [reembody(live_server, "avatar", "list", "--json", *more) for more in ((), at)]
+    here, there = (
+        {
+            one["key"]: [row["content_hash"] for row in one["versions"]]
+            for one in json.loads(said.out)
+        }
+        for said in listed
+    )
+    assert here == there
+    for arguments, reason in (
+        (("show", "besides", *at), "Did you mean beside?"),
+        (("show", "beside", "--url", url, "--token", "wrong"), "reembody token"),
+        (("edit", "beside", "--operation", HEADLESS, "--save", "beside", *at), "without Head"),
+    ):
+        said = reembody(live_server, "avatar", *arguments)
+        assert (said.code, reason in said.err) == (UNUSABLE, True), said.err
 
 
 def test_a_running_servers_database_is_refused_under_another_name(

@@ -78,4 +78,5 @@ def _target(site: Site, session_id: str) -> tuple[str, int]:
     with site.database.reading() as db:
         streams = receipt_of(db, session_id).streams
     (found,) = [one for one in streams if one.stream == "target"]
+    assert found.sha256 is not None
     return found.sha256, found.missing

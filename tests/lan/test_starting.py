@@ -1,8 +1,10 @@
 """Tests of starting, of refusing to start, and of restarting with another certificate."""
 
 import asyncio
+import re
 import socket
 import subprocess
+from itertools import islice
 from pathlib import Path
 
 import httpx2
@@ -50,6 +52,30 @@ def test_a_network_address_without_tls_is_refused(tmp_path: Path) -> None:
     assert "--lan" in result.stderr
     assert "--without-tls" in result.stderr
     assert not (tmp_path / "data").exists()
+
+
+def test_any_free_port_is_printed_once_it_is_taken(tmp_path: Path) -> None:
+    """With the port 0 the server prints the ports that it took, and answers at them."""
+    any_port = ("--port", "0", "--lan", "--lan-host", "127.0.0.1", "--lan-port", "0")
+    with subprocess.Popen(
+        [*REEMBODY, "serve", *any_port, "--help-port", "0", "--until-input-ends"],
+        env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as server:
+        assert server.stdin is not None
+        assert server.stdout is not None
+        printed = "".join(islice(server.stdout, 7))
+        local, helping = re.findall(r"(?:Reembody +|\? +)(http://\S+)", printed)
+        (secure,) = re.findall(r"Network +https://127\.0\.0\.1:(\d+)", printed)
+        assert "0" not in (secure, local.rpartition(":")[2], helping.rpartition(":")[2])
+        with httpx2.Client(transport=httpx2.HTTPTransport(retries=8), timeout=60) as client:
+            assert client.get(f"{local}/api/health").is_success
+            assert client.get(helping).is_success
+        socket.create_connection(("127.0.0.1", int(secure)), timeout=30).close()
+        server.stdin.close()
+        server.wait(60)
 
 
 def test_a_port_in_use_is_reported(tmp_path: Path) -> None:

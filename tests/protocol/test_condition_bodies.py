@@ -1,13 +1,15 @@
 """Tests of the body as a setting of a condition."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
 from app.protocol import ConfigError, compile_plan, load_study
+from app.science.avatar.mjcf import default_configuration
 from tests.protocol.helpers import edited, instruments, loaded, problems
 
-BODIES = ("female", "male")
+BODIES = {"female": "f" * 64, "male": "a" * 64}
 
 
 def with_bodies(*bodies: str, physics: bool = True) -> str:
@@ -31,7 +33,7 @@ def test_conditions_of_one_latency_may_differ_in_their_bodies() -> None:
     """
     study = loaded(with_bodies("female", "male")).protocol
     assert [one.body for one in study.conditions] == ["female", "male", None]
-    assert (study.bodies, study.has_latencies_apart) == (BODIES, False)
+    assert (study.bodies, study.has_latencies_apart) == ((*BODIES,), False)
     assert study.levels == {one.key: one.key for one in study.conditions}
     other = loaded(with_bodies("female", "")).protocol
     assert other.design_hash != study.design_hash
@@ -47,6 +49,21 @@ def test_conditions_of_one_latency_and_one_body_are_refused() -> None:
     assert problem.path == "conditions[1].latency_ms"
     assert "different bodies" in problem.remedy
     assert problem.line > 0
+
+
+def test_the_configurations_body_by_its_name_is_no_other_body() -> None:
+    """A condition may not name the body that another one of its latency wears without a name."""
+    own = replace(default_configuration(), humanoid=BODIES["female"])
+
+    def load(text: str) -> None:
+        load_study(text, instruments=instruments(), bodies=BODIES, configured=lambda *_: own)
+
+    with pytest.raises(ConfigError) as caught:
+        load(with_bodies("female", ""))
+    (problem,) = caught.value.problems
+    assert (problem.path, problem.value) == ("conditions[0].body", "female")
+    assert "tell them apart" in problem.message
+    load(with_bodies("male", ""))
 
 
 def test_a_condition_without_a_body_keeps_its_hashes() -> None:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.protocol import ConfigError
-from app.protocol.source import MAX_BYTES, MAX_DEPTH, MAX_NODES, Mark, read_source
+from app.protocol.source import MAX_DEPTH, MAX_FILE_BYTES, MAX_NODES, Mark, read_source
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def bomb(levels: int) -> str:
         ("{a: " * 50_000, 1, 4 * MAX_DEPTH + 1, "nested"),
         ("- " * 50_000, 1, 2 * MAX_DEPTH + 1, "nested"),
         ("[" + "1," * MAX_NODES + "]", 1, 2 * MAX_NODES, "more than"),
-        ("a: " + "x" * MAX_BYTES, 1, 1, "bytes"),
+        ("a: " + "x" * MAX_FILE_BYTES, 1, 1, "bytes"),
         ("a: 1\n---\nb: 2\n", 2, 1, "second document"),
         ("a: 1\n  b: 2\n", 2, 4, "not valid YAML"),
         ('a: "open\n', 2, 1, "not valid YAML"),

@@ -3,6 +3,7 @@
 import asyncio
 import re
 import time
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import cast
 
@@ -11,6 +12,7 @@ import pytest
 from httpx2 import AsyncClient
 from sqlalchemy import select
 
+from app.adapters.humanoids import read_humanoid
 from app.client.http import ServerRefusedError, call
 from app.client.telemetry import TelemetryClient
 from app.database import open_database
@@ -26,6 +28,7 @@ from app.rehearsal.rehearse import (
     physics_variant,
     report_of,
 )
+from app.science.avatar.body import FINGER_PARTS, Figure, figure_of
 from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.rotations import identity
 from app.science.skeleton import Pose, build_skeleton
@@ -34,6 +37,7 @@ from tests.features.lab import Json, ok
 from tests.protocol.helpers import edited, study
 from tests.rehearsal.orders import InstantServer, order
 from tests.rehearsal.test_headset import AS_FAST_AS_IT_GOES
+from tests.support.humanoid_files import humanoid_file
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 KEY = "short-study"
@@ -51,28 +55,50 @@ def short() -> str:
     return re.sub(r"(preparation_s|freeze_s): 5", r"\1: 0.5", text)
 
 
+def shaped(*, width: float, arms: float) -> Figure:
+    """Return the figure of the synthetic model with narrower shoulders and shorter arms."""
+    figure = figure_of(read_humanoid(humanoid_file()).humanoid)
+    places = {}
+    for part, (x, y, z) in figure.places_m.items():
+        side = 1.0 if x > 0.0 else -1.0
+        root = abs(figure.places_m["LeftUpperArm"][0])
+        beyond = abs(x) - root
+        own = part.endswith(("UpperArm", "LowerArm", "Hand")) or part in FINGER_PARTS
+        places[part] = (side * (width * root + arms * beyond), y, z) if own else (x, y, z)
+    return replace(figure, places_m=places)
+
+
+@dataclass(frozen=True)
 class BuiltHere:
     """A connection that builds the avatar in this process, with the shipped study's boxes."""
+
+    figure: Figure | None = None
 
     async def request_avatar(self, stature_m: float, body: str | None = None) -> PhysicsBody:
         """Return the avatar as the server would build it."""
         assert body is None
         tasks = study().tasks
         configuration = default_configuration()
+        if self.figure is not None:
+            configuration = replace(configuration, humanoid="0" * 64)
         scene = scene_of(tuple(tasks.layouts().values()))
-        built = avatar_model(configuration, stature_m, scene=scene)
-        return PhysicsBody(built.mjcf, configuration)
+        built = avatar_model(configuration, stature_m, figure=self.figure, scene=scene)
+        scale = built.body.parts["Hips"].joint_m[1] / build_skeleton(stature_m).standing_hips_m
+        hips_scale = 1.0 if self.figure is None else scale
+        return PhysicsBody(built.mjcf, configuration, hips_scale)
 
 
-def play(limb: str, duration_s: float, latency_ms: float = 0.0) -> tuple[InstantServer, Headset]:
-    """Run a whole phase with a physics avatar."""
+def play(
+    limb: str, duration_s: float, latency_ms: float = 0.0, figure: Figure | None = None
+) -> tuple[InstantServer, Headset]:
+    """Run a whole phase with a physics avatar, with the product's own body or this figure."""
     server = InstantServer(
         order(limb=limb, kind="task", duration_s=duration_s, latency_ms=latency_ms)
     )
     person = make_person(np.random.default_rng(3), None)
     client = cast("TelemetryClient", server)
     clock = FrameClock(AS_FAST_AS_IT_GOES)
-    headset = Headset(client, person, study().tasks, clock, BuiltHere())
+    headset = Headset(client, person, study().tasks, clock, BuiltHere(figure))
     asyncio.run(headset.run())
     return server, headset
 
@@ -90,6 +116,15 @@ def test_a_physics_avatar_completes_tasks_by_real_contacts(limb: str) -> None:
     assert green <= ends | {"LeftHand"}
     assert {one.surface.split("/")[0] for one in contacts} == {limb}
     assert headset.completions == len(completions)
+
+
+def test_a_body_with_other_arms_completes_tasks_by_sight() -> None:
+    """Worn with arms 15 % shorter and narrow shoulders, hands reach the boxes they are seen at."""
+    figure = shaped(width=0.6, arms=0.85)
+    server, headset = play("hand", 30.0, figure=figure)
+    assert [one for one in server.reports if isinstance(one, CompletionReport)]
+    off = headset._sight.seen_m
+    assert 0.08 < np.linalg.norm(off) < 0.3
 
 
 def test_an_avatar_with_longer_legs_stands_on_the_same_floor() -> None:

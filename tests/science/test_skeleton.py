@@ -125,3 +125,24 @@ def test_arrays_of_different_frame_counts_are_rejected() -> None:
     """Rotations and root positions with different frame counts are rejected."""
     with pytest.raises(SkeletonError, match="do not fit"):
         forward_kinematics(build_skeleton(1.7), np.zeros((4, 3)), rot.identity(5, 22))
+
+
+def test_measured_arms_move_elbows_and_wrists_alone() -> None:
+    """An upper arm and a forearm have their measured lengths; every other bone stays usual."""
+    usual = build_skeleton(1.7)
+    built = build_skeleton(1.7, {"upper_arm": 0.35, "forearm": 0.2, "hand": 0.3})
+    for side in ("Left", "Right"):
+        assert built.length_m(f"{side}LowerArm") == pytest.approx(0.35, abs=1e-12)
+        assert built.length_m(f"{side}Hand") == pytest.approx(0.2, abs=1e-12)
+    moved = {"LeftLowerArm", "RightLowerArm", "LeftHand", "RightHand"}
+    same = [at for at, name in enumerate(JOINT_NAMES) if name not in moved]
+    np.testing.assert_array_equal(built.offsets_m[same], usual.offsets_m[same])
+    upper = JOINT_INDEX["LeftUpperArm"]
+    np.testing.assert_array_equal(built.capsule_ends_m[upper], built.ends_m[upper])
+    np.testing.assert_allclose(built.ends_m[upper], [-0.35, 0.0, 0.0], atol=1e-12)
+
+
+def test_an_arm_in_centimetres_is_refused() -> None:
+    """A length that fits no body names the segment, and asks for metres."""
+    with pytest.raises(SkeletonError, match=r"A forearm of .* in metres"):
+        build_skeleton(1.7, {"forearm": 24.0})

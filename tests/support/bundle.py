@@ -20,6 +20,7 @@ FRONTEND = Path(__file__).resolve().parents[2] / "frontend"
 BASE, SCRIPT = "/only-in-tests/", "page.js"
 DOCUMENT = "/api/health"
 """A response of the server that runs no script."""
+SIMULATING = ("bodiesWorker-", "tryoutWorker-")
 # Run in the frontend's folder, so that its packages are found.
 BUILD = """
 import { build } from "vite";
@@ -50,6 +51,8 @@ class Bundle:
         context.route(f"{server_url}{BASE}**", lambda route: self._answer(route))
         page = context.new_page()
         page.goto(server_url + document)
+        for style in sorted(self.folder.rglob("*.css")):
+            page.add_style_tag(url=BASE + style.relative_to(self.folder).as_posix())
         page.evaluate("(address) => import(address)", f"{BASE}{SCRIPT}")
         return page
 
@@ -57,9 +60,9 @@ class Bundle:
         name = route.request.url.partition(BASE)[2]
         kind = mimetypes.guess_type(name)[0] or "application/octet-stream"
         body = (self.folder / name).read_bytes()
-        # The worker that simulates bodies has a policy of its own, which follows from its name.
+        # Workers that simulate have a policy of their own, which follows from their names.
         asset = name.removeprefix("assets/")
-        path = f"wasm/{asset}" if asset.startswith("bodiesWorker-") else asset
+        path = f"wasm/{asset}" if asset.startswith(SIMULATING) else asset
         headers = {**SECURITY_HEADERS, **asset_headers(path)}
         route.fulfill(body=body, content_type=kind, headers=headers)
 

@@ -256,3 +256,41 @@ def _moved(by: Array) -> Array:
     found = np.eye(4)
     found[:3, 3] = by
     return found
+
+
+def ktx2_picture(side_px: int, colour: tuple[int, int, int]) -> bytes:
+    """Return a KTX 2.0 file of one colour: RGBA of 8 bits in sRGB, one level, not packed.
+
+    Source: Khronos, KTX File Format Specification 2.0, section 3; Data Format 1.3, section 5.
+    """
+    pixels = bytes((*colour, 255)) * side_px**2
+    samples = b"".join(
+        struct.pack("<HBBIII", 8 * at, 7, channel, 0, 0, 255)
+        for at, channel in enumerate((0, 1, 2, 15 | 0x10))
+    )
+    block = struct.pack(
+        "<IHHBBBB4B8B", 0, 2, 24 + len(samples), 1, 1, 2, 0, *(0,) * 4, 4, *(0,) * 7
+    )
+    descriptor = struct.pack("<I", 4 + len(block) + len(samples)) + block + samples
+    srgb, head = 43, 80 + 24
+    return (
+        b"\xabKTX 20\xbb\r\n\x1a\n"
+        + struct.pack("<9I", srgb, 1, side_px, side_px, 0, 0, 1, 1, 0)
+        + struct.pack("<4I2Q", head, len(descriptor), 0, 0, 0, 0)
+        + struct.pack("<3Q", head + len(descriptor), len(pixels), len(pixels))
+        + descriptor
+        + pixels
+    )
+
+
+def with_ktx2(document: dict[str, Any]) -> None:
+    """Give a model's skin a KTX2 texture of one colour; its points lie at one place in it."""
+    picture = base64.b64encode(ktx2_picture(16, (200, 30, 120))).decode()
+    document["images"] = [{"uri": f"data:image/ktx2;base64,{picture}", "mimeType": "image/ktx2"}]
+    document["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]
+    document["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
+    for name in ("extensionsUsed", "extensionsRequired"):
+        document[name] = [*document.get(name, ()), "KHR_texture_basisu"]
+    for mesh in document["meshes"]:
+        for primitive in mesh["primitives"]:
+            primitive["material"] = 0

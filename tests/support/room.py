@@ -1,6 +1,6 @@
 """The headset's room in an emulated headset, for tests and benchmarks.
 
-`opened_room` bundles the page `vr/world/testing/roomPage.ts`, opens it, and lets a script draw
+`opened_room` bundles the page `vr/testing/roomPage.ts`, opens it, and lets a script draw
 moments: each gives a picture of both eyes and what drawing it took. Nothing is served: the
 browser's requests are answered from the bundle.
 """
@@ -117,8 +117,11 @@ EVERYTHING: Moment = {
     "isBoundarySmall": True,
     "isCurtainDrawn": True,
     "frames": 9,
+    "panel": "question",
 }
-"""All that can be seen at once; more than a visit ever shows."""
+"""All that can be seen at once, with a panel that is pointed at; more than a visit ever shows."""
+PAUSED: Moment = {**EVERYTHING, "panel": "pause", "frames": 60}
+"""The pause room, when the room has given way to it."""
 IN_FRONT: Moment = {
     "pose": _ARMS_DOWN,
     "visible": visible(remote=True),
@@ -157,6 +160,11 @@ class Room:
 
     page: Page
 
+    def draw_fading(self, moment: Moment) -> Drawn:
+        """Show a moment while the curtain closes before it, when most is drawn at once."""
+        self.draw({**moment, "isCurtainDrawn": False, "panel": None, "frames": 30})
+        return self.draw(moment)
+
     def draw(self, moment: Moment) -> Drawn:
         """Show a moment (`Moment` in `roomPage.ts`) to both eyes."""
         drawn = self.page.evaluate("(moment) => room.draw(moment)", dict(moment))
@@ -188,7 +196,7 @@ def opened_room(
     `reflector`.
     """
     if not (folder / SCRIPT).exists():
-        bundled("vr/world/testing/roomPage.ts", folder)
+        bundled("vr/testing/roomPage.ts", folder)
 
     def answer(route: Route) -> None:
         name = route.request.url.removeprefix(ORIGIN).removeprefix(BASE)

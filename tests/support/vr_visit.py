@@ -30,12 +30,21 @@ ENDED = ("completed", "aborted", "withdrawn")
 OVERTAKEN = ("stale", "not_now")
 """Error codes of a command that came after the headset's own change."""
 FRAMES_AT_ONCE = 45
+QUICK = {
+    "reactionS": 0.2,
+    "tempo": 0.75,
+    "precision": 1.0,
+    "footTempo": 1.0,
+    "patienceS": 1.0,
+}
+"""How a person moves who needs little time for a task, for visits with short phases."""
 # Read in the task that draws it: the browser empties the canvas afterwards.
-PICTURE = """() => {
-    const before = reembody.isRendering;
-    reembody.isRendering = true;
+PICTURE = """(drawing) => {
+    const drawn = globalThis[drawing];
+    const before = drawn.isRendering;
+    drawn.isRendering = true;
     journey.clock.step();
-    reembody.isRendering = before;
+    drawn.isRendering = before;
     return document.querySelector("[data-webxr_runtime] canvas").toDataURL("image/png");
 }"""
 
@@ -58,10 +67,12 @@ class WornHeadset:
         query = "" if code is None else f"?code={code}"
         self.page.goto(f"{self.url}/vr{query}")
 
-    def wear(self, person: Person, seed: int = 1) -> None:
-        """Let this person wear the headset."""
+    def wear(self, person: Person, seed: int = 1, traits: Json | None = None) -> None:
+        """Let this person wear the headset; without `traits` they follow from the seed."""
         foot = "left" if person.footedness == "left" else "right"
-        wish = {"statureM": person.stature_m, "seed": seed, "footedness": foot}
+        wish: Json = {"statureM": person.stature_m, "seed": seed, "footedness": foot}
+        if traits is not None:
+            wish["traits"] = traits
         self.page.evaluate("(wish) => journey.wear(wish)", wish)
 
     def enter(self, button: str = "Enter VR") -> None:
@@ -75,13 +86,17 @@ class WornHeadset:
         """Wait until a JavaScript expression is true, without drawing frames."""
         self.page.wait_for_function(f"() => {condition}", polling=20, timeout=timeout_ms)
 
-    def step(self, frames: int) -> float:
-        """Draw frames; return the time of the last one, s."""
-        return float(self.page.evaluate("(frames) => journey.step(frames)", frames))
+    def step(self, frames: int, frame_s: float | None = None) -> float:
+        """Draw frames, at the device's rate or so far apart; return the time of the last one, s."""
+        given = [frames, None if frame_s is None else 1000.0 * frame_s]
+        return float(self.page.evaluate("([frames, ms]) => journey.step(frames, ms)", given))
 
-    def picture(self) -> bytes:
-        """Draw a frame and return what both eyes see in it as a PNG file."""
-        data = str(self.page.evaluate(PICTURE))
+    def picture(self, drawing: str = "reembody") -> bytes:
+        """Draw a frame and return what both eyes see in it as a PNG file.
+
+        `drawing`: the global object of what draws it, the visit or a self-test.
+        """
+        data = str(self.page.evaluate(PICTURE, drawing))
         return base64.b64decode(data.partition(",")[2])
 
     def tell(self, expression: str) -> Any:
@@ -194,6 +209,7 @@ def begun(
     study: str,
     *,
     time_scale: float,
+    traits: Json | None = None,
 ) -> tuple[Visit, ScriptedTablet]:
     """Create a simulated session with a paired tablet and a worn headset, not started yet."""
     fields = {"kind": "simulated", "language": "en", "time_scale": time_scale}
@@ -206,7 +222,7 @@ def begun(
     tablet = ScriptedTablet(url, code("tablet"))
     headset = WornHeadset(context, script, url)
     headset.open(code("headset"))
-    headset.wear(tablet.person)
+    headset.wear(tablet.person, traits=traits)
     headset.enter()
     headset.do("reembody.isRendering = false")
     return Visit(operator, session_id, headset, tablet.person), tablet

@@ -81,6 +81,14 @@ CALIBRATION: Json = {
     "sources": {"Head": "viewer", "LeftHand": "controller", "RightHand": "controller"},
     "notices": ["bent_knees"],
 }
+CALIBRATION_STEP: Json = {
+    "kind": "calibration_step",
+    "t_s": 6.5,
+    "step": "t_pose",
+    "number": 3,
+    "total": 6,
+    "problem": "bent_elbows",
+}
 ADDED_LATENCY: Json = {
     "kind": "added_latency",
     "phase_id": 2,
@@ -173,6 +181,12 @@ FROM_CLIENT: list[tuple[str, Json]] = [
         "calibration_as_ordered",
         report({**CALIBRATION, "cause": "order", "revision": 41, "span_m": None}),
     ),
+    (
+        "calibration_with_measured_arms",
+        report({**CALIBRATION, "segments_m": {"upper_arm": 0.28, "forearm": 0.22}}),
+    ),
+    ("calibration_step", report(CALIBRATION_STEP)),
+    ("calibration_step_without_a_problem", report({**CALIBRATION_STEP, "problem": None})),
     ("added_latency", report(ADDED_LATENCY)),
     ("call_to_stop", report(CALL)),
     ("call_for_help", report({**CALL, "what": "help"})),
@@ -276,6 +290,12 @@ STATE_WITH_A_FORM: Json = {
         "called": False,
     },
 }
+STATE_BEFORE_A_FOOT_TASK: Json = {
+    **STATE_WITH_A_FORM,
+    "step_kind": "task",
+    "panel": {**STATE_WITH_A_FORM["panel"], "form": None, "answer": None, "limb": "foot"}
+    | {"screen_texts": {"freeze": "Bitte halten Sie einige Sekunden still."}},
+}
 STATE_AFTER_A_SHIFT: Json = {
     **STATE,
     "calibration": {
@@ -333,6 +353,7 @@ FROM_SERVER: list[tuple[str, Json]] = [
     ("state_of_a_practice", STATE_OF_PRACTICE),
     ("state_of_a_changed_avatar", STATE_OF_A_CHANGED_AVATAR),
     ("state_with_a_form_in_the_headset", STATE_WITH_A_FORM),
+    ("state_before_a_foot_task", STATE_BEFORE_A_FOOT_TASK),
     ("state_after_a_tracker_was_shifted", STATE_AFTER_A_SHIFT),
     ("state_of_another_body", STATE_OF_ANOTHER_BODY),
     ("welcome_to_a_study_with_bodies", {**WELCOME, "bodies": ["robot"]}),
@@ -357,6 +378,10 @@ REFUSED_CLIENT: list[tuple[str, Json]] = [
     ("unknown_type", {"type": "hallo", "protocol": 1, "client": "x", "epoch": None}),
     ("unknown_field", {**PRODUCED, "surprise": 1}),
     ("hello_with_epoch_zero", {"type": "hello", "protocol": 1, "client": "x", "epoch": 0}),
+    ("hello_with_an_epoch_of_true", {"type": "hello", "protocol": 1, "client": "x", "epoch": True}),
+    ("hello_with_an_epoch_in_words", {"type": "hello", "protocol": 1, "client": "x", "epoch": "1"}),
+    ("hello_with_a_protocol_of_true", {"type": "hello", "protocol": True, "client": "x"}),
+    ("hello_with_one_for_yes", {"type": "hello", "protocol": 1, "client": "x", "fingers": 1}),
     ("hello_without_protocol", {"type": "hello", "client": "x", "epoch": None}),
     (
         "hello_with_too_many_avatars",
@@ -368,22 +393,28 @@ REFUSED_CLIENT: list[tuple[str, Json]] = [
     ("unknown_state_of_a_goal", report({**GOALS, "states": {**GOALS["states"], "Head": "seen"}})),
     ("unknown_goal", report({**GOALS, "states": {**GOALS["states"], "Tail": "tracked"}})),
     ("stature_is_negative", report({**CALIBRATION, "stature_m": -1.7})),
+    ("stature_of_nobody", report({**CALIBRATION, "stature_m": 0.0})),
+    ("stature_of_a_giant", report({**CALIBRATION, "stature_m": 10.0})),
     ("residual_of_an_unknown_goal", report({**CALIBRATION, "residuals_m": {"Tail": 0.1}})),
     ("compensated_more_than_added", report({**ADDED_LATENCY, "compensated_s": 0.5})),
     ("unknown_call", report({**CALL, "what": "pizza"})),
     ("time_is_null", report({"kind": "materialised", "t_s": None})),
+    ("time_is_true", report({"kind": "materialised", "t_s": True})),
     ("time_is_negative", report({**CONTACT, "end_s": -1.0})),
     ("time_is_beyond_range", report({**PHASE, "t_s": 1.0e9 + 1.0})),
     ("phase_id_is_negative", report({**CONTACT, "phase_id": -1})),
     ("phase_id_is_beyond_range", report({**CONTACT, "phase_id": 2**31})),
+    ("phase_id_is_true", report({**CONTACT, "phase_id": True})),
     ("phase_id_is_not_whole", report({**CONTACT, "phase_id": 1.5})),
     ("unknown_arrow", report({**PHASE, "what": "stopped"})),
     ("unknown_surface_kind", report({**CONTACT, "surface_kind": "ceiling"})),
     ("surface_is_too_long", report({**CONTACT, "surface": "x" * 41})),
     ("name_with_nul", report({**CONTACT, "body_part": "Right\0Hand"})),
     ("completion_number_zero", report({**COMPLETION, "number": 0})),
+    ("completion_number_is_true", report({**COMPLETION, "number": True})),
     ("order_is_too_long", report({**COMPLETION, "order": [1] * 17})),
     ("seq_is_beyond_range", {**report(PHASE), "seq": 2**53}),
+    ("seq_is_false", {**report(PHASE), "seq": False}),
     ("epoch_is_zero", {**report(PHASE), "epoch": 0}),
     ("probed_by_half", {**PROBED, "client_received_s": None}),
     ("produced_of_an_unknown_stream", {**PRODUCED, "streams": {"thoughts": 1}}),

@@ -34,6 +34,14 @@ def test_a_non_finite_time_is_flagged() -> None:
     assert flags.non_finite.tolist() == [False, True, False]
 
 
+@pytest.mark.parametrize("away_m", [1000.1, -1e30, 3e38])
+def test_hips_that_are_in_no_room_are_flagged(away_m: float) -> None:
+    """Hips beyond a kilometre are flagged like a value that is no number; at 999 m they are not."""
+    values = standing(3)
+    values[0, 0], values[1, 2] = 999.0, away_m
+    assert flag_frames(TIMES_S, values).non_finite.tolist() == [False, True, False]
+
+
 @pytest.mark.parametrize("length", [0.0, 1e-40, 0.998, 1.002, 1e20, 3e38])
 def test_a_rotation_that_is_not_of_unit_length_is_flagged(length: float) -> None:
     """Zero, denormal, shrunken and huge quaternions are flagged as non-unit."""

@@ -20,11 +20,13 @@ from app.adapters.captures.capture import (
 )
 from app.adapters.captures.tables import FARTHEST_M
 from app.adapters.captures.text import text_lines
-from app.adapters.captures.units import chosen_axes, chosen_length, guess_length
+from app.adapters.captures.units import METRES_IN, chosen_axes, chosen_length, guess_length
+from app.science.anatomy import Notice
 from app.science.rig import Rig, RigMotion
 from app.science.rotations import FloatArray, geodesic_angle, identity
 
 _NOTICEABLE_M = 1e-4
+_USUAL_UNIT = "cm"
 _SHORTEST_FRAME_S, _LONGEST_FRAME_S = 1e-5, 1e3
 # Pitching a ball turns the shoulder at about 120 rad/s (Fleisig et al. 1995); walking, below 20.
 _FASTEST_JOINT_RAD_S = 120.0
@@ -45,7 +47,7 @@ def read_bvh_capture(data: bytes, *, name: str, reading: Reading, limits: Limits
         clip = parse_bvh_lines(text_lines(data), metres_per_unit=1.0, limits=bounds)
     except BvhError as error:
         raise CaptureError(error.reason, line=error.line) from error
-    scale, length, notes = _unit(clip, reading)
+    scale, length, notes, notices = _unit(clip, reading)
     _check_size(clip, scale)
     motion, more = _motion(clip, scale)
     notes += _doubt_about_up(clip, reading)
@@ -57,18 +59,26 @@ def read_bvh_capture(data: bytes, *, name: str, reading: Reading, limits: Limits
         rate=Convention(f"{motion.rate_hz:.6g} Hz", "file"),
     )
     turned = turned_rig_motion(motion, reading.up or "y")
-    return Capture("bvh", turned, conventions, (*notes, *more))
+    return Capture("bvh", turned, conventions, (*notes, *more), notices)
 
 
 def _order(channels: tuple[str, ...]) -> str:
     return "".join(channel[0] for channel in channels if channel.endswith("rotation"))
 
 
-def _unit(clip: BvhClip, reading: Reading) -> tuple[float, Convention, list[str]]:
+def _unit(
+    clip: BvhClip, reading: Reading
+) -> tuple[float, Convention, list[str], tuple[Notice, ...]]:
+    """Return metres per unit, its origin, notes, and a notice if another unit than cm is guessed.
+
+    BVH has no place for a unit. Most files are in centimetres; one in inches is 2.54 times as
+    large, and nothing but the size of its body says so.
+    """
     chosen = chosen_length(reading)
     if chosen is not None and reading.metres_per_unit is not None:
-        return reading.metres_per_unit, chosen, []
+        return reading.metres_per_unit, chosen, [], ()
     guess = guess_length(float(np.max(_extents(clip))))
+    convention = Convention(guess.name, "guessed")
     if guess.plausible:
         note = f"The file names no unit; in {guess.name} its rest pose spans {guess.size_m:.2f} m."
     else:
@@ -76,7 +86,19 @@ def _unit(clip: BvhClip, reading: Reading) -> tuple[float, Convention, list[str]
             f"The file names no unit, and none makes its rest pose human: read in {guess.name} it"
             f" spans {guess.size_m:.3g} m. Say the unit if you know it."
         )
-    return guess.metres_per_unit, Convention(guess.name, "guessed"), [note]
+    if guess.plausible and guess.name == _USUAL_UNIT:
+        return guess.metres_per_unit, convention, [note], ()
+    times = guess.metres_per_unit / METRES_IN[_USUAL_UNIT]
+    notice = Notice(
+        "unit",
+        "noted",
+        "The file names no unit, so that of a body of human size was taken.",
+        f"a rest pose of {guess.size_m:.3g} m if the unit is {guess.name}, which is {times:.3g}"
+        f" times as large as in {_USUAL_UNIT}, the usual unit of BVH",
+        f"0.85 m to 2.4 m{'' if guess.plausible else ', which no known unit gives'}",
+        "If the person has another size, say the unit.",
+    )
+    return guess.metres_per_unit, convention, [note], (notice,)
 
 
 def _extents(clip: BvhClip) -> FloatArray:

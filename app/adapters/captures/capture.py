@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from app.science.anatomy import Notice
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 
 Origin = Literal["file", "format", "guessed", "chosen"]
@@ -86,9 +87,11 @@ class Capture:
         motion: a skeleton's movement, markers, or rigid bodies.
         conventions: the conventions by which it was read.
         notes: sentences that users should know: gaps, repairs, omitted columns.
+        notices: what the size of the body had to decide, because the file does not say it.
     """
 
     format: str
     motion: RigMotion | MarkerMotion | BodyMotion
     conventions: Conventions
     notes: tuple[str, ...] = ()
+    notices: tuple[Notice, ...] = ()

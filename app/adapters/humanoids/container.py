@@ -5,6 +5,7 @@ Source: Khronos, glTF 2.0 specification, sections 3.6.1.1 (buffers) and 4 (GLB).
 
 import base64
 import binascii
+import re
 import struct
 from dataclasses import dataclass
 from typing import Final
@@ -13,15 +14,34 @@ _MAGIC: Final = b"glTF"
 _JSON, _BIN = 0x4E4F534A, 0x004E4942
 _MOST_JSON_VALUES: Final = 2_000_000
 """Maximum number of JSON values; in memory they take up to fifty times their size."""
+_VALID: Final = "Valid are VRM (.vrm), glTF binary (.glb) and glTF in one file (.gltf)."
 _AS_ONE_FILE = "Export the model as one file: glTF binary (.glb) or VRM."
-_OTHERS = {
+_OTHERS: Final = {
     b"Kaydara FBX": "an FBX file",
+    b"; FBX": "an FBX file",
     b"PK\x03\x04": "a ZIP archive",
-    b"<?xml": "an XML file, perhaps COLLADA",
+    b"<mujoco": "a MuJoCo model",
+    b"<robot": "a URDF robot",
+    b"<collada": "a COLLADA file",
+    b"<!doctype": "a web page",
+    b"<html": "a web page",
+    b"<": "an XML file",
     b"BLENDER": "a Blender file",
     b"OFF": "an OFF mesh",
     b"solid": "an STL mesh",
+    b"PXR-USDC": "a USD scene",
+    b"#usda": "a USD scene",
+    b"ply\n": "a PLY mesh",
+    b"ply\r": "a PLY mesh",
+    b"HIERARCHY": "a recorded movement (BVH), which belongs on the page Captures",
+    b"\x89PNG": "a picture",
+    b"\xff\xd8\xff": "a picture",
+    b"GIF8": "a picture",
+    b"%PDF": "a PDF document",
 }
+"""What other files begin with, letters in either case; the first match counts."""
+_XML_HEAD: Final = re.compile(rb"\s*(?:(?:<\?.*?\?>|<!--.*?-->)\s*)*", re.DOTALL)
+"""White space, declarations and comments, which precede the first element of an XML file."""
 
 
 class HumanoidFileError(ValueError):
@@ -88,13 +108,18 @@ def _plain(data: bytes) -> bytes:
     text = data.removeprefix(b"\xef\xbb\xbf")
     if text[:100].lstrip()[:1] == b"{":
         return text
-    for start, kind in _OTHERS.items():
-        if data.startswith(start):
-            raise HumanoidFileError(f"This is {kind}, not glTF or VRM. {_AS_ONE_FILE}")
-    raise HumanoidFileError(
-        f"This is not glTF or VRM: it begins with {data[:8]!r}, valid is 'glTF' or a brace."
-        f" {_AS_ONE_FILE}"
-    )
+    raise HumanoidFileError(f"This is {_kind_of(text)}. {_VALID} {_AS_ONE_FILE}")
+
+
+def _kind_of(data: bytes) -> str:
+    """Return what a file is that is neither glTF nor VRM, in words."""
+    if not data.strip():
+        return "an empty file"
+    head = data[:4096]
+    found = _XML_HEAD.match(head)
+    start = (head if found is None else head[found.end() :]).lower() or b"<"
+    kinds = (kind for first, kind in _OTHERS.items() if start.startswith(first.lower()))
+    return next(kinds, "neither glTF nor VRM")
 
 
 def _glb(data: bytes) -> Container:

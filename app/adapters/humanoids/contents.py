@@ -24,7 +24,7 @@ MOST_PIXELS = 200_000_000
 """Total number of pixels; with four bytes each and smaller copies (mipmaps), about 1 GiB."""
 _MOST_JPEG_SEGMENTS = 1_000
 _VALID = "PNG, JPEG, WebP and KTX2"
-_UNSIZED = {b"GIF8": "GIF", b"BM": "BMP", b"\0\0\x01\0": "ICO"}
+_UNSIZED = {b"GIF8": "GIF", b"BM": "BMP", b"\0\0\x01\0": "ICO", b"<": "SVG"}
 _KTX2 = b"\xabKTX 20\xbb\r\n\x1a\n"
 
 

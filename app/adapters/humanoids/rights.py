@@ -14,7 +14,7 @@ Source: VRM consortium, VRM 0.0 `meta`; VRM 1.0 `VRMC_vrm` `meta`; Creative Comm
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, Final, Literal
 from urllib.parse import parse_qsl, urlsplit
 
@@ -33,6 +33,7 @@ Permission = Literal["allowed", "forbidden", "unknown"]
 Wearers = Literal["author", "licensed", "everyone", "unknown"]
 """Who may wear a model: its author, people with a permission of their own, or everyone."""
 _LONGEST: Final = 1_000
+_MOST_AUTHORS: Final = 30
 _Text = Annotated[str, Field(max_length=10_000)]
 
 
@@ -173,9 +174,33 @@ _CC_URLS: Final[Mapping[str, str]] = {
 
 def rights_of(asset: Asset, vrm0: Vrm0Meta | None, vrm1: Vrm1Meta | None) -> ModelRights:
     """Return what a file says about its author and the use of the model."""
-    if vrm1 is not None:
-        return _of_vrm1(vrm1, asset)
-    return _of_gltf(asset) if vrm0 is None else _of_vrm0(vrm0, asset)
+    if vrm1 is None:
+        return _of_gltf(asset) if vrm0 is None else _of_vrm0(vrm0, asset)
+    newer = _of_vrm1(vrm1, asset)
+    return newer if vrm0 is None else _strictest(newer, _of_vrm0(vrm0, asset))
+
+
+_STRICT_WEARERS: Final[tuple[Wearers, ...]] = ("author", "licensed", "everyone", "unknown")
+_USES: Final = (
+    *("violent", "sexual", "political", "antisocial"),
+    *("commercial", "redistribution", "modification"),
+)
+
+
+def _strictest(one: ModelRights, other: ModelRights) -> ModelRights:
+    """Return the first statement of a file with both, and of each term the stricter one."""
+    stricter: dict[str, Any] = {
+        use: next((said for said in ("forbidden", getattr(one, use)) if said in pair), "unknown")
+        for use in _USES
+        if (pair := (getattr(one, use), getattr(other, use)))
+    }
+    wearers = next(who for who in _STRICT_WEARERS if who in (one.wearers, other.wearers))
+    return replace(
+        one,
+        **stricter,
+        wearers=wearers,
+        credit_needed=bool(one.credit_needed or other.credit_needed),
+    )
 
 
 def _of_vrm0(meta: Vrm0Meta, asset: Asset) -> ModelRights:
@@ -188,8 +213,8 @@ def _of_vrm0(meta: Vrm0Meta, asset: Asset) -> ModelRights:
         contact=_short(meta.contactInformation),
         copyright=_short(asset.copyright),
         licence=_short(licence),
-        licence_url=_short(meta.otherLicenseUrl) or _CC_URLS.get(licence, ""),
-        other_url=_short(meta.otherPermissionUrl),
+        licence_url=_address(meta.otherLicenseUrl) or _CC_URLS.get(licence, ""),
+        other_url=_address(meta.otherPermissionUrl),
         wearers=_WEARERS_0.get(meta.allowedUserName, "unknown"),
         violent=_stricter(meta.violentUssageName, hub.get("violent_expression")),
         sexual=_stricter(meta.sexualUssageName, hub.get("sexual_expression")),
@@ -242,8 +267,8 @@ def _of_vrm1(meta: Vrm1Meta, asset: Asset) -> ModelRights:
         contact=_short(meta.contactInformation),
         copyright=_short(meta.copyrightInformation or asset.copyright),
         licence="VRM Public License 1.0" if "vrm.dev/licenses/1.0" in meta.licenseUrl else "",
-        licence_url=_short(meta.licenseUrl),
-        other_url=_short(meta.otherLicenseUrl),
+        licence_url=_address(meta.licenseUrl),
+        other_url=_address(meta.otherLicenseUrl),
         wearers=_WEARERS_1[meta.avatarPermission],
         violent=_allowed(meta.allowExcessivelyViolentUsage),
         sexual=_allowed(meta.allowExcessivelySexualUsage),
@@ -270,7 +295,7 @@ def _of_gltf(asset: Asset) -> ModelRights:
         copyright=_short(asset.copyright),
         licence=licence,
         # Sketchfab's form: `CC-BY-4.0 (http://creativecommons.org/licenses/by/4.0/)`.
-        licence_url=licence.partition("(")[2].rstrip(")") if "(http" in licence else "",
+        licence_url=_address(licence.partition("(")[2].rstrip(")")),
     )
 
 
@@ -279,7 +304,21 @@ def _allowed(value: bool) -> Permission:  # noqa: FBT001 - a statement of the fi
 
 
 def _authors(*names: str) -> tuple[str, ...]:
-    return tuple(short for name in names if (short := _short(name)))
+    known = [short for name in names if (short := _short(name))]
+    kept, length = [], 0
+    for name in known[:_MOST_AUTHORS]:
+        length += len(name)
+        if length > _LONGEST:
+            break
+        kept.append(name)
+    more = len(known) - len(kept)
+    return (*kept, *((f"and {more} more",) if more else ()))
+
+
+def _address(text: str) -> str:
+    """Return an address of the web, or nothing for any other, which no page should link to."""
+    short = _short(text)
+    return short if short.lower().startswith(("https://", "http://")) else ""
 
 
 def _short(text: str) -> str:

@@ -2,17 +2,18 @@
 
 The file is a NumPy archive without pickles: `header`, a JSON text, and the tables of the database.
 The space is not stored, because the seed reproduces it. The header contains a hash of everything
-else, so that a truncated or changed file is rejected. The file is written next to its destination
+else, so that a truncated or changed file is rejected. What P_mixed learnt is in the header, where a
+file of an earlier version has nothing: it predicts with P_prob, and earlier programs read new files
+as they did before. The file is written next to its destination
 and then moved there: a reader finds either the old or the new file, complete.
 """
 
 import hashlib
 import json
-import os
 import zipfile
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from app.science.walking.following import FollowingRules
 from app.science.walking.maps import SuitabilityOptions, WalkDatabase
 from app.science.walking.models import FitOptions, FittedWalking, ReadingScore, StaticFit, restored
 from app.science.walking.records import ParameterGrid, SteeringParameter, WalkingError
+from app.science.walking.travel_times import Posterior, StartingAndStopping
+from app.whole_files import write_whole
 
 FORMAT, VERSION = "reembody-walking-model", 1
 MOST_BYTES = 2_000_000_000
@@ -32,16 +35,12 @@ def write_model(path: Path, fit: FittedWalking, rules: FollowingRules) -> str:
     header = _header(fit, rules)
     digest = content_hash(header, tables)
     text = json.dumps({**header, "content_hash": digest}, sort_keys=True)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with part.open("xb") as file:
-            letters = np.frombuffer(text.encode(), dtype=np.uint8)
-            np.savez_compressed(file, allow_pickle=False, header=letters, **tables)
-            file.flush()
-            os.fsync(file.fileno())
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    letters = np.frombuffer(text.encode(), dtype=np.uint8)
+
+    def write(file: IO[bytes]) -> None:
+        np.savez_compressed(file, allow_pickle=False, header=letters, **tables)
+
+    write_whole(path, write)
     return digest
 
 
@@ -93,7 +92,7 @@ def _check_header(path: Path, header: object) -> None:
 
 def _header(fit: FittedWalking, rules: FollowingRules) -> dict[str, Any]:
     base, static = fit.database, fit.static
-    return {
+    return _travel_times(fit) | {
         "format": FORMAT,
         "version": VERSION,
         "parameters": [asdict(one) for one in base.grid.parameters],
@@ -119,6 +118,41 @@ def _header(fit: FittedWalking, rules: FollowingRules) -> dict[str, Any]:
     }
 
 
+def _travel_times(fit: FittedWalking) -> dict[str, Any]:
+    if fit.mixed is None or fit.database.resting is None:
+        return {}
+    learnt = fit.mixed.posterior
+    return {
+        "resting": fit.database.resting.tolist(),
+        "travel_times": {
+            "curve": learnt.curve.name,
+            "coefficients": learnt.coefficients.tolist(),
+            "between": learnt.between.tolist(),
+            "within": learnt.within.tolist(),
+            "tails": learnt.tails,
+        },
+    }
+
+
+def _posterior_of(header: dict[str, Any]) -> Posterior | None:
+    stored = header.get("travel_times")
+    if stored is None:
+        return None
+    curve = StartingAndStopping()
+    if stored["curve"] != curve.name:
+        raise WalkingError(
+            f"The model's travel times follow the curve {stored['curve']!r}; this program knows"
+            f" {curve.name!r} only."
+        )
+    return Posterior(
+        curve,
+        coefficients=np.array(stored["coefficients"], dtype=np.float64),
+        between=np.array(stored["between"], dtype=np.float64),
+        within=np.array(stored["within"], dtype=np.float64),
+        tails=float(stored["tails"]),
+    )
+
+
 def _fit_of(header: dict[str, Any], tables: dict[str, Any]) -> FittedWalking:
     grid = ParameterGrid(
         tuple(SteeringParameter(**one) for one in header["parameters"]),
@@ -131,6 +165,7 @@ def _fit_of(header: dict[str, Any], tables: dict[str, Any]) -> FittedWalking:
         subjects=tuple(header["subjects"]),
         sources=tuple(header["sources"]),
         kinds=tuple(header["kinds"]),
+        resting=np.array(header["resting"]) if "resting" in header else None,
         **tables,
     )
     reading = SuitabilityOptions(**header["reading"])
@@ -147,4 +182,4 @@ def _fit_of(header: dict[str, Any], tables: dict[str, Any]) -> FittedWalking:
         np.array(stored["node"]),
         stored["node_deviation"],
     )
-    return restored(database, options, reading, scores, static)
+    return restored(database, options, reading, scores, static, _posterior_of(header))

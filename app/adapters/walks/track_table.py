@@ -2,8 +2,8 @@
 
 A header names columns, in any case: `id` (or subject, person, participant, ped), `t`, `time`,
 `time_s`, `time_ms` or `frame`, and `x`, `y`, each of these two with a unit if it is not metres
-(`x_cm`, `y [mm]`). Other columns are ignored. Columns are separated by commas, semicolons, tabs or
-spaces; lines beginning with # are comments, of which `framerate: 16` is read.
+(`x_cm`, `y [mm]`, `x_ft`). Other columns are ignored. Columns are separated by commas, semicolons,
+tabs or spaces; lines beginning with # are comments, of which `framerate: 16` is read.
 
 Without a header the columns are id, frame, x, y (z) in centimetres, as in the trajectories of the
 pedestrian dynamics data archive of Juelich. If time is a frame number, the rate must be known.
@@ -24,11 +24,14 @@ MOST_ROWS, MOST_PEOPLE = 5_000_000, 20_000
 LONGEST_GAP_S = 0.5
 FASTEST_M_S = 12.0
 """Largest plausible median speed of a person; a faster track must be in another unit."""
-_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+LONGEST_STEP_S = 2.0
+"""Longest time between samples as a rule: people take about two steps a second, so that is rare."""
+UNITS_M = {"ft": 0.3048, "m": 1.0, "cm": 0.01, "mm": 0.001}
+"""Metres per unit, by the names of units that a header may give."""
 _IDS = ("id", "subject", "person", "participant", "ped", "pers_id", "agent")
 _TIMES = {"t": 1.0, "time": 1.0, "time_s": 1.0, "t_s": 1.0, "time_ms": 0.001, "t_ms": 0.001}
 _FRAMES = ("frame", "frame_id", "fr")
-_NAME = re.compile(r"^([a-z_]+?)(?:[_ ]*[\[(]?(cm|mm|m)[\])]?)?$")
+_NAME = re.compile(r"^([a-z_]+?)(?:[_ ]*[\[(]?(cm|mm|m|ft)[\])]?)?$")
 _RATE = re.compile(r"frame\s*rate\D*([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE | re.ASCII)
 
 
@@ -51,7 +54,10 @@ class TrackReading:
 
 @dataclass(frozen=True)
 class _Layout:
-    """The columns' indices and factors to SI; `person` is -1 if all rows are of one person."""
+    """The columns' indices and factors to SI; `person` is -1 if all rows are of one person.
+
+    `time_name` is the name of the column of time; `assumed` is said about the file.
+    """
 
     person: int
     time: int
@@ -61,12 +67,27 @@ class _Layout:
     metres: tuple[float, float]
     separator: str | None
     rows_from: int
+    time_name: str = "the second"
+    assumed: tuple[str, ...] = ()
 
 
 _AS_IT_IS = TrackReading()
 
 
+@dataclass(frozen=True, eq=False)
+class TrackTable:
+    """The tracks of a table, and what had to be assumed because neither it nor the user said it."""
+
+    tracks: list[Track]
+    assumed: tuple[str, ...]
+
+
 def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) -> list[Track]:
+    """Read the tracks of all people of a table: those of `read_track_table`."""
+    return read_track_table(data, name=name, reading=reading).tracks
+
+
+def read_track_table(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) -> TrackTable:
     """Read the tracks of all people of a table, in the order in which they appear.
 
     Args:
@@ -76,7 +97,8 @@ def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) ->
 
     Raises:
         CaptureError: (with the line) a missing column, a cell that is not a number, NaN, a person
-            with only one sample, times that do not increase, positions that are not in metres.
+            with only one sample, times that do not increase, times that are not in seconds,
+            positions that are not in metres.
     """
     lines = list(text_lines(data))
     layout = _layout(lines, reading)
@@ -91,7 +113,10 @@ def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) ->
                 )
     if not people:
         raise CaptureError("the table has no rows.")
-    return [_track(person, np.array(rows), name, reading) for person, rows in people.items()]
+    tracks = [
+        _track(person, np.array(rows), name, reading, layout) for person, rows in people.items()
+    ]
+    return TrackTable(tracks, layout.assumed)
 
 
 def _layout(lines: list[str], reading: TrackReading) -> _Layout:
@@ -110,8 +135,20 @@ def _layout(lines: list[str], reading: TrackReading) -> _Layout:
                 f"{len(cells)} columns without a header: give a header with id, time, x, y.",
                 line=first + 1,
             )
-        unit = reading.metres_per_unit or _UNITS["cm"]
-        return _Layout(0, 1, 2, 3, _step_s(rate_hz, first), (unit, unit), separator, first)
+        unit = reading.metres_per_unit or UNITS_M["cm"]
+        return _Layout(
+            0,
+            1,
+            2,
+            3,
+            _step_s(rate_hz, first),
+            (unit, unit),
+            separator,
+            first,
+            assumed=()
+            if reading.metres_per_unit
+            else ("no header: the columns were taken as id, frame, x, y in centimetres",),
+        )
     return _named(cells, separator, first, rate_hz, reading)
 
 
@@ -127,10 +164,13 @@ def _named(
             raise CaptureError(f"no column of time: name one of {valid}.", line=at + 1)
         time = (frame, _step_s(rate_hz, at))
     found: dict[str, tuple[int, float]] = {}
+    bare: list[str] = []
     for column, cell in enumerate(cells):
         match = _NAME.match(cell)
         if match and match.group(1) in ("x", "y"):
-            unit = reading.metres_per_unit or _UNITS[match.group(2) or "m"]
+            unit = reading.metres_per_unit or UNITS_M[match.group(2) or "m"]
+            if match.group(1) not in found and match.group(2) is None:
+                bare.append(match.group(1))
             found.setdefault(match.group(1), (column, unit))
     missing = [axis for axis in ("x", "y") if axis not in found]
     if missing:
@@ -138,7 +178,24 @@ def _named(
             f"no column {' and '.join(missing)}: there are {', '.join(cells)}.", line=at + 1
         )
     (x, x_unit), (y, y_unit) = found["x"], found["y"]
-    return _Layout(person, time[0], x, y, time[1], (x_unit, y_unit), separator, at + 1)
+    assumed = []
+    if bare and reading.metres_per_unit is None:
+        which = "columns x and y name" if len(bare) > 1 else f"column {bare[0]} names"
+        assumed.append(f"the {which} no unit: taken as metres")
+    if cells[time[0]] in ("t", "time"):
+        assumed.append(f"the column {cells[time[0]]} names no unit: taken as seconds")
+    return _Layout(
+        person,
+        time[0],
+        x,
+        y,
+        time[1],
+        (x_unit, y_unit),
+        separator,
+        at + 1,
+        cells[time[0]],
+        tuple(assumed),
+    )
 
 
 def _step_s(rate_hz: float | None, at: int) -> float:
@@ -173,13 +230,21 @@ def _sample(line: str, number: int, layout: _Layout) -> tuple[str, tuple[float, 
     return person, (time_s, values[1] * layout.metres[0], values[2] * layout.metres[1])
 
 
-def _track(person: str, rows: FloatArray, name: str, reading: TrackReading) -> Track:
+def _track(
+    person: str, rows: FloatArray, name: str, reading: TrackReading, layout: _Layout
+) -> Track:
     times_s, xy_m = rows[:, 0] - rows[0, 0], rows[:, 1:]
     try:
         track = Track(times_s, xy_m, person, name, reading.kind, reading.statures_m.get(person))
     except WalkingError as error:
         raise CaptureError(str(error)) from error
     waits_s = np.diff(times_s)
+    if (usual_s := float(np.median(waits_s))) > LONGEST_STEP_S:
+        raise CaptureError(
+            f"the samples of person {person!r} are {usual_s:.3g} s apart as a rule, by the column"
+            f" {layout.time_name}; people take two steps a second. If these are milliseconds, name"
+            " the column time_ms; if they are numbers of frames, name it frame and give the rate."
+        )
     longest = int(np.argmax(waits_s))
     if waits_s[longest] > max(LONGEST_GAP_S, 3.0 * float(np.median(waits_s))):
         raise CaptureError(

@@ -30,6 +30,12 @@ def analyse(
             help="FACTOR=LEVEL,LEVEL,...: the order of its levels; a trend in names needs one."
         ),
     ] = None,
+    average: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Column of words, such as a limb, to average over within each cell; repeatable."
+        ),
+    ] = None,
     art: Annotated[
         bool, typer.Option("--art", help="Also the aligned rank transform, which is contested.")
     ] = False,
@@ -51,6 +57,7 @@ def analyse(
         art,
         where=tuple(where or ()),
         declared_orders=tuple(order or ()),
+        averaged=tuple(average or ()),
     )
     with reported(ValueError, OSError):
         done = carry_out(asked)

@@ -23,6 +23,10 @@ _SEPARATORS = (",", ";", "\t")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+")
 _SHOWN = 60
 _VALUES_SHOWN = 12
+NAMES_OF_MEASURES = frozenset(
+    {"measure", "score", "variable", "instrument", "scale", "subscale", "axis", "reference", "unit"}
+)
+"""Columns that say in words what a row measures: rows that differ in one are never averaged."""
 NO_LEVEL = MISSING - {"none"}
 """Texts in a factor's column that mean that the row has no level of it."""
 
@@ -54,12 +58,20 @@ class _Row:
 
 
 def read_tidy(
-    path: Path, subject: str, within: list[str], measure: str, where: Sequence[str] = ()
+    path: Path,
+    subject: str,
+    within: list[str],
+    measure: str,
+    where: Sequence[str] = (),
+    averaged: Sequence[str] = (),
 ) -> TidyInput:
     """Read the named columns of the rows that fulfil every condition `COLUMN=VALUE`.
 
+    `averaged` names columns whose words tell the rows of a cell apart and may be averaged over.
+
     Raises OSError if the file cannot be read, UnusableTable if it is not a table, lacks a column,
-    has a duplicate row although all other cells have one row, or no row fulfils a condition.
+    has a duplicate row although all other cells have one row, has several measures in one cell, or
+    no row fulfils a condition.
     """
     separator, header, rows = _table(path)
     requested = [subject, *within, measure]
@@ -67,6 +79,7 @@ def read_tidy(
         raise UnusableTable(f"The columns asked for must all be different: {', '.join(requested)}.")
     for name in requested:
         _check_column(name, header)
+    _check_averaged(averaged, header, requested)
     for row in rows:
         if len(row.cells) != len(header):
             raise UnusableTable(
@@ -89,6 +102,12 @@ def read_tidy(
         for name in requested
     }
     keys = list(zip(*(columns[name] for name in [subject, *within]), strict=True))
+    others = {
+        name: [row.cells[at] for row in rows]
+        for at, name in enumerate(header)
+        if name not in requested
+    }
+    _require_one_value(others, keys, averaged)
     return TidyInput(
         subjects=columns[subject],
         within={name: columns[name] for name in within},
@@ -96,6 +115,69 @@ def read_tidy(
         lines=[row.line for row in rows],
         replicates=_repeated(rows, keys),
         left_out={reason: count for reason, count in left_out.items() if count},
+    )
+
+
+def _check_averaged(averaged: Sequence[str], header: list[str], requested: list[str]) -> None:
+    for name in averaged:
+        _check_column(name, header)
+        if name in requested:
+            raise UnusableTable(f"Column {name!r} is analysed; it cannot be averaged over, too.")
+
+
+def _require_one_value(
+    others: dict[str, list[str]], keys: Sequence[tuple[str, ...]], averaged: Sequence[str]
+) -> None:
+    """Raise UnusableTable if columns that are not analysed say that values must not be averaged."""
+    within_averaged = [
+        (*key, *words)
+        for key, *words in zip(keys, *(others[name] for name in averaged), strict=True)
+    ]
+    for name, words in others.items():
+        _require_one_measure(name, words, keys)
+        _require_no_parts(name, words, within_averaged)
+
+
+def _require_one_measure(
+    name: str, measures: Sequence[str], keys: Sequence[tuple[str, ...]]
+) -> None:
+    """Raise UnusableTable if a column names measures, and a cell of the design has several."""
+    in_words = any(as_number(word) is None for word in measures if word)
+    if name.casefold() not in NAMES_OF_MEASURES or not in_words:
+        return
+    first: dict[tuple[str, ...], str] = {}
+    for key, measured in zip(keys, measures, strict=True):
+        if first.setdefault(key, measured) != measured:
+            found = ordered_levels(measures)
+            shown = ", ".join(found[:_VALUES_SHOWN]) + (", ..." if found[_VALUES_SHOWN:] else "")
+            raise UnusableTable(
+                f"Column {name!r} names several measures for {', '.join(key)}: {first[key]!r} and"
+                f" {measured!r}. Their mean would mean nothing; analyse one at a time with --where"
+                f" '{name}=...'. There are: {shown}."
+            )
+
+
+def _require_no_parts(name: str, words: Sequence[str], keys: Sequence[tuple[str, ...]]) -> None:
+    """Raise UnusableTable if a column's words tell the rows of every cell apart.
+
+    Its words recur from cell to cell, each at most once, and most cells have all of them: they may
+    be measures, items or levels of a further factor. Times and remarks do not recur so.
+    """
+    found, counts = set(words), Counter(keys)
+    full = sum(count == len(found) for count in counts.values())
+    if len(found) < 2 or 2 * full < len(counts):
+        return
+    if any(as_number(word) is not None for word in found):
+        return
+    if "" in found or len(set(zip(keys, words, strict=True))) != len(keys):
+        return
+    listed = ordered_levels(words)
+    shown = ", ".join(listed[:_VALUES_SHOWN]) + (", ..." if listed[_VALUES_SHOWN:] else "")
+    raise UnusableTable(
+        f"Column {name!r} tells the values of each cell apart: {shown}. If these are different"
+        " measures, their mean would mean nothing: analyse one at a time with --where"
+        f" '{name}=...'. If they are levels of a factor, name it with --within '{name}', or average"
+        f" over it knowingly with --average '{name}'."
     )
 
 

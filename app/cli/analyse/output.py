@@ -81,9 +81,10 @@ def _family(family: Family) -> Iterator[str]:
             f" Kendall's W = {friedman.kendall_w:.3f}; n = {friedman.n}"
         )
     if page is not None:
+        method = "exact given the ties" if page.method == "exact" else page.method
         yield (
-            f"  Page      L = {page.statistic:g}, one-sided {_p(page.p)} that it rises,"
-            f" {_p(page.p_falling)} that it falls, {page.method}"
+            f"  Page      L = {page.statistic:g}, one-sided {_p(page.p_rises)} that it rises,"
+            f" {_p(page.p_falls)} that it falls, {method}"
         )
     for key, outcome in family.further.items():
         yield f"  {statistical_test(key).name.en}  {outcome.sentence}"

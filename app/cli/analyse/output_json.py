@@ -143,8 +143,16 @@ def _planned(planned: AgainstReference | None, *, ordered: bool) -> dict[str, An
 def _page(test: PageTrend | None) -> dict[str, Any] | None:
     if test is None:
         return None
-    p_values = ("p", "p_falling", "p_given_ties", "p_asymptotic")
-    return _values(test, "statistic", *p_values, "method", "n")
+    by_tables = test.method == "exact"
+    return {
+        "statistic": test.statistic,
+        "p": test.p_rises,
+        "p_falling": test.p_falls,
+        **_values(test, "p_given_ties", "p_falling_given_ties"),
+        "p_by_tables": test.p if by_tables else None,
+        "p_falling_by_tables": test.p_falling if by_tables else None,
+        **_values(test, "p_asymptotic", "method", "n"),
+    }
 
 
 def _effect(one: Effect) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from app.cli.analyse.families import Family, families_of, mean_interval, tried
-from app.cli.analyse.inputs import read_tidy
+from app.cli.analyse.inputs import TidyInput, read_tidy
 from app.science.statistics import (
     AlignedRanks,
     Cells,
@@ -17,6 +17,7 @@ from app.science.statistics import (
     StatisticsError,
     TooFewData,
     aligned_ranks_within,
+    as_number,
     cells_of,
     complete_rows,
     has_order,
@@ -25,6 +26,8 @@ from app.science.statistics import (
 
 _MOST_FACTORS = 2
 _SHOWN = 8
+MISSING_CODES = frozenset({-9999.0, -999.0, -99.0, -9.0, 99.0, 999.0, 9999.0})
+"""Numbers that questionnaires and statistics programs often store for a missing value."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,8 @@ class AnalyseOrder:
     """Conditions COLUMN=VALUE that a row must fulfil."""
     declared_orders: tuple[str, ...] = ()
     """FACTOR=LEVEL,LEVEL,...: the declared order of a factor's levels."""
+    averaged: tuple[str, ...] = ()
+    """Columns of words that tell the rows of a cell apart, and may be averaged over."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +89,9 @@ def carry_out(order: AnalyseOrder) -> Analysis:
             f"{len(order.within)} within-subject factors were named; one or two can be analysed."
         )
     orders = _orders(order)
-    read = read_tidy(order.table, order.subject, order.within, order.measure, order.where)
+    read = read_tidy(
+        order.table, order.subject, order.within, order.measure, order.where, order.averaged
+    )
     cells = cells_of(
         read.subjects,
         read.within,
@@ -98,6 +105,7 @@ def carry_out(order: AnalyseOrder) -> Analysis:
     _check_usable(order, cells, complete)
     left_out = read.left_out | ({f"no {order.measure}": cells.n_empty} if cells.n_empty else {})
     warnings = _warnings(cells, complete, read.replicates)
+    warnings += _codes(order.measure, read)
     warnings += [
         f"{count} rows have {reason} and were left out"
         for reason, count in read.left_out.items()
@@ -182,6 +190,28 @@ def _warnings(cells: Cells, complete: Complete, replicates: int) -> list[str]:
     if replicates:
         warnings.append(f"{replicates} rows duplicate an earlier one; they count as replicates")
     return warnings
+
+
+def _codes(measure: str, read: TidyInput) -> list[str]:
+    """Name values such as -99 that are usual codes for a missing value and far from all others."""
+    numbers = [as_number(text) for text in read.measure]
+    others = [one for one in numbers if one is not None and one not in MISSING_CODES]
+    if not others:
+        return []
+    low, high = min(others), max(others)
+    found = []
+    for code in sorted(MISSING_CODES & {one for one in numbers if one is not None}):
+        if max(low - code, code - high) <= high - low:
+            continue
+        lines = [line for line, one in zip(read.lines, numbers, strict=True) if one == code]
+        shown = ", ".join(str(line) for line in lines[:_SHOWN])
+        more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
+        found.append(
+            f"{measure} is {code:g} in line {shown}{more}, far from all other values ({low:g} to"
+            f" {high:g}); it was used as a number. If it stands for a missing value, leave the"
+            " cell empty"
+        )
+    return found
 
 
 def _means(cells: Cells, rng: np.random.Generator) -> list[CellMean]:

@@ -6,6 +6,7 @@ from pathlib import Path
 from app.adapters.humanoids.writer import write_mannequin
 from app.science.avatar.body import Population, proportions
 from app.science.avatar.mannequin import make_mannequin
+from app.whole_files import write_whole
 
 POPULATIONS: Mapping[str, Population] = {"male": "male", "female": "female", "neutral": "average"}
 """The populations that the command accepts, and the population whose form each has."""
@@ -20,7 +21,7 @@ def make(out: Path, population: str, stature_m: float, segments: Sequence[str]) 
     body = proportions(stature_m, dict(_length(text) for text in segments))
     made = make_mannequin(body, POPULATIONS[population])
     data = write_mannequin(made, population)
-    out.write_bytes(data)
+    write_whole(out, data)
     return (
         f"{out}: {population}, {stature_m:g} m, {len(made.triangles)} triangles,"
         f" {len(data) / 1000:.0f} kB"

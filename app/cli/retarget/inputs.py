@@ -20,12 +20,14 @@ from typing import Literal
 
 from app.adapters.captures import Capture, CaptureError, Reading, read_capture_file
 from app.errors import missing_file
+from app.science.anatomy import Notice
 from app.science.retargeting import (
     REFERENCE_JOINT_MAP,
     Ground,
     JointMap,
     Ramp,
     Steps,
+    checked_skeleton,
     named_avatar,
     named_stature_m,
     propose_joint_map,
@@ -50,11 +52,13 @@ class Clip:
         capture: as read from the file.
         motion: of the capture's skeleton, or of the one fitted to its markers or bodies.
         notes: what a user should know, each a sentence.
+        notices: what anatomy does not allow, and whether it was mended.
     """
 
     capture: Capture
     motion: RigMotion
     notes: tuple[str, ...]
+    notices: tuple[Notice, ...] = ()
 
 
 def read_clip(path: Path, reading: Reading) -> Clip:
@@ -69,14 +73,17 @@ def read_clip(path: Path, reading: Reading) -> Clip:
     except CaptureError as error:
         raise ValueError(f"{path}: {error}") from error
     if isinstance(capture.motion, RigMotion):
-        return Clip(capture, capture.motion, capture.notes)
+        joint_map = propose_joint_map(capture.motion.rig).joint_map
+        motion, notices = checked_skeleton(capture.motion, joint_map)
+        return Clip(capture, motion, capture.notes, (*capture.notices, *notices))
     from app.science.fitting import FitError, fit_skeleton  # only needed for markers
 
     try:
         fitted = fit_skeleton(capture.motion)
     except FitError as error:
         raise ValueError(f"{path}: {error}") from error
-    return Clip(capture, fitted.motion, (*capture.notes, *fitted.notes))
+    notes = (*capture.notes, *fitted.notes)
+    return Clip(capture, fitted.motion, notes, fitted.notices)
 
 
 def read_avatar(key: str) -> tuple[Rig, JointMap]:

@@ -1,5 +1,7 @@
 """Format the results of `reembody retarget`: JSON for scripts, a table for people."""
 
+from dataclasses import asdict
+
 from app.cli.retarget.run import Done
 from app.science.retargeting import TOLERANCE_DEG, Table1Row, Walk, Walks
 
@@ -29,6 +31,9 @@ def as_json(done: Done) -> dict[str, object]:
         },
         "foot_slide_m_s": walks.slide_m_s if walks else None,
         "unmapped_joints": list(result.unmapped_avatar_joints),
+        "floor": asdict(result.floor),
+        "notices": [asdict(notice) for notice in done.notices],
+        "conventions": asdict(done.clip.capture.conventions),
     }
 
 
@@ -44,6 +49,7 @@ def as_text(done: Done) -> str:
             ("rate", conventions.rate),
         )
     ]
+    notes = done.clip.notes
     title = (
         f"{done.order.clip.name} onto {done.order.to}: {motion.frame_count} frames at"
         f" {motion.rate_hz:.6g} fps, {motion.duration_s:.2f} s"
@@ -51,9 +57,11 @@ def as_text(done: Done) -> str:
     lines = [
         title,
         *(f"  {name:<20}{value}" for name, value in rows),
-        *(f"  note: {note}" for note in done.clip.notes),
+        *(f"  note: {note}" for note in notes),
+        *(f"  {one.action}: {one.sentence}" for one in done.notices if one.sentence not in notes),
         "",
         *_figures(done),
+        f"  {'under the floor':<20}{_floor(done)}",
         f"  {'unmapped, avatar':<20}{_names(done.result.unmapped_avatar_joints)}",
         f"  {'unmapped, clip':<20}{_names(done.result.unmapped_source_joints)}",
     ]
@@ -121,6 +129,23 @@ def _slide(walks: Walks) -> list[str]:
     if walks.locked.out_of_reach:
         lowered += f"; {walks.locked.out_of_reach} frame(s) with a foot out of reach"
     return [before, after, lowered]
+
+
+def _floor(done: Done) -> str:
+    """Say how deep the feet are, and what keeping them above the floor costs."""
+    floor = done.result.floor
+    left = f"{100.0 * floor.left_m:.1f} cm at most"
+    if floor.lifted_m > 0.0:
+        return (
+            f"{left}; {100.0 * floor.sunk_m:.1f} cm before feet were locked, and single feet"
+            f" lifted by at most {100.0 * floor.lifted_m:.1f} cm"
+        )
+    if floor.raised_m == 0.0:
+        return left
+    return (
+        f"{left}; {100.0 * floor.sunk_m:.1f} cm before the body was raised, by at most"
+        f" {100.0 * floor.raised_m:.1f} cm and {100.0 * floor.mean_raised_m:.1f} cm on average"
+    )
 
 
 def _strides(source: Walk, avatar: Walk) -> list[str]:

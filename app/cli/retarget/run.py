@@ -1,6 +1,5 @@
 """Retarget a capture to an avatar from the command line."""
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from app.cli.retarget.inputs import (
     read_clip,
     reading_of,
 )
+from app.science.anatomy import Notice
 from app.science.retargeting import (
     Flat,
     Ground,
@@ -23,6 +23,7 @@ from app.science.retargeting import (
     retarget_motion,
 )
 from app.science.rig import RigMotion
+from app.whole_files import write_whole
 
 _WRITERS = {one.suffix: one for one in WRITERS}
 
@@ -62,6 +63,11 @@ class Done:
     clip: Clip
     result: Retargeted
 
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """What anatomy does not allow, of the capture and then of its walk."""
+        return (*self.clip.notices, *self.result.notices)
+
 
 def carry_out(order: RetargetOrder) -> Done:
     """Retarget a clip, and write the result if an output file is given.
@@ -84,6 +90,9 @@ def carry_out(order: RetargetOrder) -> Done:
     result = retarget_motion(
         clip.motion, source_map, avatar, avatar_map, ground=ground, lock=order.lock_feet
     )
+    for notice in result.notices:
+        if notice.action == "refused":
+            raise ValueError(f"{order.clip}: {notice.sentence}")
     if order.out is not None:
         write_motion(order.out, result.motion)
     return Done(order, clip, result)
@@ -92,13 +101,7 @@ def carry_out(order: RetargetOrder) -> Done:
 def write_motion(path: Path, motion: RigMotion) -> None:
     """Write a motion atomically in the format of the file's ending; raise OSError."""
     pieces = _WRITERS[path.suffix.lower()].write(motion)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with part.open("x", encoding="utf-8", newline="\n") as file:
-            file.writelines(pieces)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    write_whole(path, lambda file: file.writelines(piece.encode() for piece in pieces))
 
 
 def _check_out(order: RetargetOrder) -> None:

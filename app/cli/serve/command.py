@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from app.cli.errors import reported
+from app.gc_tuning import loading_modules
 
 MOST = 65_535
 """The highest port number."""
@@ -46,7 +47,8 @@ def serve(
     until_input_ends: Annotated[bool, typer.Option("--until-input-ends", hidden=True)] = False,
 ) -> None:
     """Serve Reembody on this machine, with --lan also on the lab's network."""
-    from app.cli.serve.run import serve_forever
+    with loading_modules():
+        from app.cli.serve.run import serve_forever
 
     given = {
         "port": port,

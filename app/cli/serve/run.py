@@ -10,6 +10,9 @@ import sys
 import threading
 import time
 from collections.abc import Mapping
+from contextlib import closing
+from dataclasses import replace
+from socket import socket
 
 import uvicorn
 from fastapi import FastAPI
@@ -36,6 +39,7 @@ from app.lan.serving import (
     bind,
     current_machine,
     make_plan,
+    port_of,
     tls_context,
 )
 from app.main import create_app
@@ -77,13 +81,18 @@ def serve_forever(
 
 def _serve(settings: Settings, own: Ownership, *, new_database: bool) -> None:
     with reported():
-        plan = make_plan(settings, Clock())
+        bound = _Bound(make_plan(settings, Clock()))
+    with closing(bound):
+        _serve_on(bound, settings, own, new_database=new_database)
+
+
+def _serve_on(bound: "_Bound", settings: Settings, own: Ownership, *, new_database: bool) -> None:
+    with reported():
         watch = CertificateWatch(
-            plan, Network(), None if plan.certificates is None else tls_context()
+            bound.plan, Network(), None if bound.plan.certificates is None else tls_context()
         )
         watch.refresh()
-        bound = _Bound(plan)
-    own.announce(bound.local[0].getsockname()[1])
+    own.announce(bound.plan.local_port)
     _prepare(settings, new_database=new_database)
     app = create_app(
         settings,
@@ -153,16 +162,35 @@ def renew_certificate(*, new_authority: bool, as_json: bool) -> str:
 
 
 class _Bound:
-    """The server's sockets, bound before the database is opened."""
+    """The server's sockets, bound before the database is opened.
+
+    `plan` has the ports that were taken, also where any free one was asked for.
+    """
 
     def __init__(self, plan: Plan) -> None:
-        self.local = bind(plan.local_hosts, plan.local_port, "--port")
-        self.lan = bind(plan.lan_hosts, plan.lan_port, "--lan-port") if plan.certificates else ()
-        self.help = (
-            bind(plan.lan_hosts, plan.help_port, "--help-port")
-            if plan.help_port is not None
-            else ()
+        self.local: tuple[socket, ...] = ()
+        self.lan: tuple[socket, ...] = ()
+        self.help: tuple[socket, ...] = ()
+        try:
+            self.local = bind(plan.local_hosts, plan.local_port, "--port")
+            if plan.certificates:
+                self.lan = bind(plan.lan_hosts, plan.lan_port, "--lan-port")
+            if plan.help_port is not None:
+                self.help = bind(plan.lan_hosts, plan.help_port, "--help-port")
+        except BaseException:
+            self.close()
+            raise
+        self.plan = replace(
+            plan,
+            local_port=port_of(self.local),
+            lan_port=port_of(self.lan) if self.lan else plan.lan_port,
+            help_port=port_of(self.help) if self.help else plan.help_port,
         )
+
+    def close(self) -> None:
+        """Give the ports back."""
+        for one in (*self.local, *self.lan, *self.help):
+            one.close()
 
     def doors(self, app: FastAPI, watch: CertificateWatch, settings: Settings) -> list[Door]:
         """Return the listeners: each group of sockets with the application served on it."""

@@ -29,7 +29,21 @@ def tune(
         bool,
         typer.Option("--evaluate", help="Test the existing gains without changing them."),
     ] = False,
+    axis: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Tune this axis only, as in LeftUpperLegX; repeatable. With --mirror, a left one"
+            " includes its right counterpart."
+        ),
+    ] = None,
     attempts: Annotated[int, typer.Option(help="Experiments per axis at most.")] = 3,
+    relay_torque: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Torque of the relay, N m: one for all axes, or AXIS=N m; repeatable. Without it"
+            " a ramp finds each axis' own."
+        ),
+    ] = None,
     workers: Annotated[int, typer.Option(help="Threads.")] = 2,
     capture: Annotated[
         Path | None, typer.Option(help="Also follow this capture, for the angular error.")
@@ -55,7 +69,9 @@ def tune(
         heuristic=heuristic,
         mirror=mirror,
         evaluate=evaluate,
+        axes=None if axis is None else tuple(axis),
         attempts=attempts,
+        relay_torques=tuple(relay_torque or ()),
         workers=workers,
         capture=capture,
         out=out,

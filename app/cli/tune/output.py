@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import Any
 
-from app.cli.tune.output_json import report_json, summary_json
 from app.cli.tune.run import Tuned
+from app.features.movement.tuning import report_json, summary_json
 from app.science.avatar.tuning import (
     AxisTuning,
     Tracking,
@@ -36,10 +36,16 @@ def as_text(done: Tuned) -> str:
             f"Overshoot: median {figures['median_overshoot_percent']:.2f} %, worst"
             f" {figures['worst_overshoot_percent']:.2f} %, of {figures['tried']} axes."
         )
+    if figures["greatest_torque_share"] is not None:
+        lines.append(
+            f"The relay experiments took at most {figures['greatest_torque_share']:.0%} of an axis'"
+            " torque limit."
+        )
+    lines += [f"Warning, {one.name}: {one.warning}." for one in report.axes if one.warning]
     if done.tracking is not None:
         lines += [*_tracking_text("with nothing around", done.tracking.alone)]
         lines += [*_tracking_text("on a floor", done.tracking.on_floor), ""]
-    words = ("tuned", "retried", "accepted", "flagged", "locked")
+    words = ("tuned", "retried", "accepted", "flagged", "locked", "kept")
     counts = ", ".join(f"{figures[word]} {word}" for word in words if word in figures)
     rule = f"rule {report.options.heuristic}" if isinstance(report, TuningReport) else "as given"
     lines.append(
@@ -67,6 +73,8 @@ def _tracking_text(where: str, tracking: Tracking) -> Iterator[str]:
             else "none"
         )
         yield f"  {words:<42}{figures}"
+    for axis, share in islice(tracking.saturated.items(), _MOST_TOUCHES):
+        yield f"  saturated: {axis} is at its torque limit in {share:.1%} of the frames"
     for touch, share in islice(tracking.touches.items(), _MOST_TOUCHES):
         yield f"  touches: {touch} in {share:.1%} of the frames"
 

@@ -9,8 +9,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from app.cli.errors import require_folder_of
-from app.cli.tune.storage import check_key, lab_database, save_tuned, stored_avatar
+from app.cli.avatars import check_key, lab_database
+from app.cli.errors import require_folder_of, warn
+from app.cli.tune.storage import save_tuned, stored_avatar
 from app.database import Database
 from app.protocol.avatar import avatar_text
 from app.science.avatar.body import Figure
@@ -27,6 +28,7 @@ from app.science.avatar.tuning import (
 )
 from app.science.avatar.tuning import tune as tune_avatar
 from app.science.skeleton import Movement, build_skeleton, resample
+from app.whole_files import NotWritten, write_whole
 
 _RATE_HZ = 90.0
 """The frame rate of a headset."""
@@ -43,7 +45,9 @@ class TuneOrder:
     heuristic: str
     mirror: bool
     evaluate: bool
+    axes: tuple[str, ...] | None
     attempts: int
+    relay_torques: tuple[str, ...]
     workers: int
     capture: Path | None
     out: Path | None
@@ -75,25 +79,53 @@ def carry_out(order: TuneOrder) -> Tuned:
     Raises ValueError if the options do not allow a tuning, ReembodyError for an unknown avatar or
     an unusable database, OSError if the file cannot be written, TuningCancelled.
     """
+    for_all_nm, by_axis_nm = _relay_torques(order.relay_torques)
     options = TuningOptions(
         heuristic=order.heuristic,
         mirror=order.mirror,
         attempts=order.attempts,
         workers=order.workers,
+        relay_torque_nm=for_all_nm,
+        relay_torques_nm=by_axis_nm,
+        axes=order.axes,
     )
+    if order.evaluate and order.axes is not None:
+        raise ValueError("--evaluate tests every free axis, so --axis has no effect")
+    if order.evaluate and order.relay_torques:
+        raise ValueError("--evaluate makes no relay experiment, so --relay-torque has no effect")
     if order.evaluate and (order.save is not None or order.out is not None):
         raise ValueError("--evaluate changes nothing, so there is nothing to --save or write --out")
     require_folder_of(order.out)
     if order.save is None and order.avatar is None:
         return _carried_out(order, options, None)
     if order.save is not None:
-        check_key(order.save)
-    with lab_database(saves=order.save is not None) as database:
+        check_key("--save", order.save)
+    with lab_database("tune") as database:
         return _carried_out(order, options, database)
 
 
+def _relay_torques(given: tuple[str, ...]) -> tuple[float | None, dict[str, float]]:
+    """Return the torque for all axes, if there is one, and those of single axes."""
+    for_all_nm: float | None = None
+    by_axis_nm: dict[str, float] = {}
+    for text in given:
+        axis, _, number = text.rpartition("=")
+        try:
+            torque_nm = float(number)
+        except ValueError:
+            raise ValueError(
+                f"--relay-torque {text!r} is no torque: a number of N m such as 20 is valid, or"
+                " one for an axis such as LeftUpperLegX=20"
+            ) from None
+        if axis:
+            by_axis_nm[axis.strip()] = torque_nm
+        else:
+            for_all_nm = torque_nm
+    return for_all_nm, by_axis_nm
+
+
 def _carried_out(order: TuneOrder, options: TuningOptions, database: Database | None) -> Tuned:
-    configuration, figure = _avatar(order, database)
+    configuration, figure, number = _avatar(order, database)
     # Read the capture first, so that an error is reported before the tuning.
     movement = None if order.capture is None else _movement(order.capture, order.stature_m)
     started_s = time.process_time()
@@ -112,21 +144,42 @@ def _carried_out(order: TuneOrder, options: TuningOptions, database: Database | 
     tracking = None
     if movement is not None:
         tracking = follow_capture(report.configuration, order.stature_m, movement, figure=figure)
-    if order.out is not None:
-        order.out.write_text(avatar_text(report.configuration), encoding="utf-8")
+    unwritten = _unwritten(order.out, report.configuration)
     saved = None
     if database is not None and order.save is not None and isinstance(report, TuningReport):
         saved = save_tuned(database, order.save, report, tracking)
-    return Tuned(order, report, tracking, cpu_s, saved)
+        if order.avatar == order.save and number is not None and saved.number > number + 1:
+            warn(
+                f"{order.save}@{saved.number - 1} was saved during the tuning, which began from"
+                f" {order.save}@{number}, so its changes are not in the tuned version; see reembody"
+                f" avatar diff {order.save}@{number} {order.save}@{saved.number - 1}"
+            )
+    if unwritten is not None:
+        if saved is None:
+            raise unwritten
+        raise ValueError(f"{unwritten} The tuning is not lost: {saved.name} is stored.")
+    return Tuned(order, report, tracking, cpu_s, None if saved is None else saved.name)
 
 
-def _avatar(order: TuneOrder, database: Database | None) -> tuple[Configuration, Figure | None]:
-    found, figure = default_configuration(), None
+def _unwritten(out: Path | None, configuration: Configuration) -> NotWritten | None:
+    """Write the file; return why it cannot be written, as the tuning may still be stored."""
+    try:
+        if out is not None:
+            write_whole(out, avatar_text(configuration))
+    except NotWritten as error:
+        return error
+    return None
+
+
+def _avatar(
+    order: TuneOrder, database: Database | None
+) -> tuple[Configuration, Figure | None, int | None]:
+    found, figure, number = default_configuration(), None, None
     if database is not None and order.avatar is not None:
-        found, figure = stored_avatar(database, order.avatar)
+        found, figure, number = stored_avatar(database, order.avatar)
     if order.mass_kg is not None:
         found = replace(found, total_mass_kg=order.mass_kg)
-    return found, figure
+    return found, figure, number
 
 
 def _movement(capture: Path, stature_m: float) -> Movement:

@@ -24,9 +24,7 @@ _People = Annotated[
 _Rate = Annotated[
     float | None, typer.Option(help="Frames a second, where a table's time is a frame number.")
 ]
-_Unit = Annotated[
-    str | None, typer.Option(help="Unit of x and y in tables that do not name it: m, cm or mm.")
-]
+_Unit = Annotated[str | None, typer.Option(help="Unit of x and y in tables: m, cm, mm or ft.")]
 _Seed = Annotated[int, typer.Option(help="Seed of all random draws.", min=0)]
 
 
@@ -75,7 +73,9 @@ def sample(
     ] = None,
     stature: Annotated[float | None, typer.Option(help="Of the walker, m.")] = None,
     count: Annotated[int, typer.Option(help="How many draws.")] = 100,
-    which: Annotated[str, typer.Option("--model", help="prob, adapt or stat.")] = "prob",
+    which: Annotated[
+        str | None, typer.Option("--model", help="mixed (if the file has it), prob, adapt or stat.")
+    ] = None,
     seed: _Seed = 1,
     as_json: _Json = False,
 ) -> None:
@@ -110,14 +110,8 @@ def evaluate(
 
     order = WalksOrder(tuple(walks), scene, people, rate_hz, unit)
     with reported(ValueError, OSError):
-        fit_, result = carry_out_evaluation(
-            model, order, draws=draws, seed=seed, even_fitted=even_fitted
-        )
-    print(
-        json.dumps(texts.evaluation_json(fit_, result))
-        if as_json
-        else texts.evaluation_text(fit_, result)
-    )
+        done = carry_out_evaluation(model, order, draws=draws, seed=seed, even_fitted=even_fitted)
+    print(json.dumps(texts.evaluation_json(done)) if as_json else texts.evaluation_text(done))
 
 
 def _show_progress(done: int, total: int) -> None:

@@ -7,16 +7,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
 from app.adapters.captures import CaptureError, read_capture_file
 from app.adapters.walks import load_scene, load_shipped, shipped_scenes
-from app.adapters.walks.track_table import TrackReading, read_tracks
+from app.adapters.walks.track_table import UNITS_M, TrackReading, TrackTable, read_track_table
 from app.errors import missing_file
 from app.protocol import ConfigError
 from app.science.rig import RigError
 from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.recording import (
     LeftOut,
+    Recorded,
     Walker,
+    doubts_about,
     entry_of,
     rounds_of,
     track_of_motion,
@@ -26,8 +30,9 @@ from app.science.walking.records import PlannedWalk, Planner, Track, WalkingErro
 from app.science.walking.scene import Scene, open_scene
 
 MOST_BYTES = 500_000_000
+_NAMES_SHOWN = 6
 _PERSON_COLUMNS = {"id", "subject", "person", "participant", "ped", "pers_id", "agent"}
-_TRACK_COLUMNS = ({"x", "x_m", "x_cm", "x_mm"}, {"y", "y_m", "y_cm", "y_mm"})
+_TRACK_COLUMNS = tuple({axis, *(f"{axis}_{unit}" for unit in UNITS_M)} for axis in ("x", "y"))
 
 
 @dataclass(frozen=True)
@@ -54,10 +59,6 @@ class Tables:
 
     rate_hz: float | None = None
     metres_per_unit: float | None = None
-
-
-UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001}
-"""Metres per unit, by the names that `--unit` accepts."""
 
 
 def tables_of(rate_hz: float | None, unit: str | None) -> Tables:
@@ -128,11 +129,15 @@ class Entries:
         entries: the walks that are used, in the order of the files.
         names: for each entry, its file, person and number.
         left_out: name and reason of each walk that is not used.
+        named_by_file: people who are only known by the name of their file.
+        notices: what was assumed about a file, and what makes that doubtful, each with its file.
     """
 
     entries: list[PlannedWalk] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     left_out: list[tuple[str, str]] = field(default_factory=list)
+    named_by_file: set[str] = field(default_factory=set)
+    notices: list[str] = field(default_factory=list)
 
 
 def read_entries(
@@ -142,33 +147,44 @@ def read_entries(
 
     Raises:
         ValueError: a file cannot be used, or contains no movement from one place to another; no
-            path connects a walk's ends, or one of them is in an obstacle; no walk can be used.
+            walk can be used, because no path connects its ends, say.
         OSError: a file cannot be opened.
     """
-    found = Entries()
+    found, recorded = Entries(), Recorded()
     planner = None if scene is None else LazyThetaPlanner(scene)
     for path in files:
-        tracks = _tracks(path, people, tables)
+        table = _tracks(path, people, tables)
+        tracks = table.tracks
         walks = [walk for track in tracks for walk in walks_of(track)]
         rounds = [walk for track in tracks for walk in rounds_of(track)]
         if not walks and not rounds:
-            raise ValueError(
-                f"{path}: it contains no walk; a walk ends 0.25 m or farther from its start."
+            raise ValueError(f"{path}: {_no_walk(tracks)}")
+        doubts = doubts_about(walks)
+        found.notices.extend(f"{path.name}: {text}" for text in (*table.assumed, *doubts))
+        if doubts:
+            found.notices.append(
+                f"{path.name}: check the unit of x and y (--unit {', '.join(UNITS_M)}) and the rate"
             )
         counts: Counter[str] = Counter()
         for walk in walks:
             counts[walk.subject] += 1
             name = f"{walk.source}, {walk.subject}, walk {counts[walk.subject]}"
+            if objection := recorded.objection(walk, name):
+                found.left_out.append((name, objection))
+                continue
             used: Planner = planner or LazyThetaPlanner(open_scene(walk.start_m, walk.goal_m))
             try:
                 entry = entry_of(walk, used)
             except WalkingError as error:
-                raise ValueError(f"{name}: {error}") from error
+                found.left_out.append((name, str(error)))
+                continue
             if isinstance(entry, LeftOut):
                 found.left_out.append((name, entry.reason))
             else:
                 found.entries.append(entry)
                 found.names.append(name)
+                if walk.subject == path.stem and path.name not in people.subjects:
+                    found.named_by_file.add(walk.subject)
         found.left_out.extend(
             (
                 f"{walk.source}, {walk.subject}, round {number}",
@@ -176,20 +192,49 @@ def read_entries(
             )
             for number, walk in enumerate(rounds, start=1)
         )
+    _require_known_people(people, found)
     if not found.entries:
         listed = "; ".join(f"{name}: {reason}" for name, reason in found.left_out)
         raise ValueError(f"no walk can be used. {listed}.")
     return found
 
 
-def _tracks(path: Path, people: People, tables: Tables) -> list[Track]:
+def _no_walk(tracks: Sequence[Track]) -> str:
+    widest_m = max(float(np.ptp(track.xy_m, axis=0).max()) for track in tracks)
+    longest_s = max(float(track.times_s[-1] - track.times_s[0]) for track in tracks)
+    return (
+        "it contains no walk; a walk ends 0.25 m or farther from its start and is faster than 0.1"
+        f" m/s. As it was read, people stay within {widest_m:.3g} m for up to {longest_s:.3g} s: if"
+        " that is not so, check the units of x, y and time, and the rate."
+    )
+
+
+def _require_known_people(people: People, found: Entries) -> None:
+    """Raise ValueError if people are listed, but none of them walks: their statures would be lost.
+
+    That happens where files do not name their subject and the list does not name the files.
+    """
+    walked = sorted({entry.walk.subject for entry in found.entries})
+    listed = sorted({*people.statures_m, *people.subjects.values()})
+    if listed and walked and not set(listed) & set(walked):
+        raise ValueError(
+            f"--people lists {_some(listed)}, but the walks are of {_some(walked)}: nobody is in"
+            " both. Give the file of each walk in a column `file`, or the same names."
+        )
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:_NAMES_SHOWN]) + (", ..." if names[_NAMES_SHOWN:] else "")
+
+
+def _tracks(path: Path, people: People, tables: Tables) -> TrackTable:
     try:
         header = _header(path)
         if all(header & names for names in _TRACK_COLUMNS) or path.suffix.lower() == ".txt":
             return _table(path, header, people, tables)
         subject = people.subjects.get(path.name, path.stem)
         walker = Walker(subject, path.name, people.statures_m.get(subject))
-        return [track_of_motion(read_capture_file(path).motion, walker)]
+        return TrackTable([track_of_motion(read_capture_file(path).motion, walker)], ())
     except (CaptureError, WalkingError, RigError) as error:
         option = " (--rate-hz)" if "frame rate is not specified" in str(error) else ""
         raise ValueError(f"{path}: {error}{option}") from error
@@ -204,15 +249,17 @@ def _header(path: Path) -> set[str]:
     return {cell.strip().strip('"') for cell in first.replace(";", ",").split(",")}
 
 
-def _table(path: Path, header: set[str], people: People, tables: Tables) -> list[Track]:
+def _table(path: Path, header: set[str], people: People, tables: Tables) -> TrackTable:
     reading = TrackReading(
         rate_hz=tables.rate_hz,
         metres_per_unit=tables.metres_per_unit,
         statures_m=people.statures_m,
     )
-    tracks = read_tracks(path.read_bytes(), name=path.name, reading=reading)
+    table = read_track_table(path.read_bytes(), name=path.name, reading=reading)
     if path.suffix.lower() == ".txt" or header & _PERSON_COLUMNS:
-        return tracks
+        return table
     # Without a column of people, the file is about one person, named after the file.
     subject = people.subjects.get(path.name, path.stem)
-    return [replace(tracks[0], subject=subject, stature_m=people.statures_m.get(subject))]
+    stature_m = people.statures_m.get(subject)
+    only = replace(table.tracks[0], subject=subject, stature_m=stature_m)
+    return TrackTable([only], table.assumed)

@@ -1,14 +1,22 @@
 """Format the results of `reembody walk`: JSON for scripts, tables for people."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
 
-from app.cli.walk.run import Fitted, Sampled
-from app.science.walking.evaluation import COVERAGES, PERCENTILES, Evaluation
+from app.cli.walk.run import Evaluated, Fitted, Sampled
+from app.science.walking.evaluation import (
+    COVERAGES,
+    PERCENTILES,
+    Comparison,
+    Evaluation,
+    reason_for_no_interval,
+)
 from app.science.walking.maps import SuitabilityOptions
-from app.science.walking.models import FittedWalking
+from app.science.walking.models import MIXED, FittedWalking
 from app.science.walking.records import TURNING
+from app.science.walking.travel_times import BASELINES
 
 _SHOWN = 6
 
@@ -25,6 +33,7 @@ def fit_json(done: Fitted) -> dict[str, object]:
         "dependencies": list(fit.database.names),
         "without": list(done.left_out),
         "cut_walks": done.cut,
+        "people_named_by_file": sorted(done.walks.named_by_file),
         "fitted": [
             {
                 "walk": name,
@@ -35,7 +44,8 @@ def fit_json(done: Fitted) -> dict[str, object]:
             }
             for name, entry in zip(done.walks.names, done.walks.entries, strict=True)
         ],
-        "left_out": [{"walk": name, "reason": reason} for name, reason in done.walks.left_out],
+        "left_out": _listed(done.walks.left_out),
+        "notices": done.walks.notices,
         "entries": len(fit.space.z),
         "k": fit.space.k,
         "reading": asdict(fit.reading),
@@ -71,13 +81,18 @@ def fit_text(done: Fitted) -> str:
             f"  {'own path':<14}{len(own)} walk(s) took another way than the shortest and are"
             f" fitted on it: {_some(own)}"
         )
-    if done.walks.left_out:
-        listed = [f"{name}: {reason}" for name, reason in done.walks.left_out]
-        lines.append(f"  {'walks left out':<14} {_some(listed)}")
+    lines += _left_out_lines(done.walks.left_out)
+    lines += [f"  {'notice':<14}{text}" for text in done.walks.notices]
     if done.cut:
         lines.append(
             f"  {'note':<14}{done.cut} walk(s) begin or end with the recording, amid walking; they"
             " say little about how people start and stop"
+        )
+    if len(done.walks.named_by_file) > 1:
+        lines.append(
+            f"  {'note':<14}{len(done.walks.named_by_file)} people are only known by the names of"
+            " their files: if one person walks in several, say so with --people, or predictions"
+            " are too certain"
         )
     lines.append(f"  {'space':<14}{len(fit.space.z)} entries, {fit.space.k} neighbours")
     lines.append(f"  {'reading':<14}{reading_text(fit.reading)}")
@@ -91,6 +106,17 @@ def fit_text(done: Fitted) -> str:
     )
     lines += [f"  {'static':<14}{parameters}", "", f"written: {done.order.out}"]
     return "\n".join(lines)
+
+
+def _listed(left_out: Sequence[tuple[str, str]]) -> list[dict[str, str]]:
+    return [{"walk": name, "reason": reason} for name, reason in left_out]
+
+
+def _left_out_lines(left_out: Sequence[tuple[str, str]]) -> list[str]:
+    if not left_out:
+        return []
+    listed = _some([f"{name}: {reason}" for name, reason in left_out])
+    return [f"  {'left out':<14}{_counted(len(left_out), 'walk')}: {listed}"]
 
 
 def _some(texts: list[str]) -> str:
@@ -115,12 +141,13 @@ def sample_json(done: Sampled) -> dict[str, object]:
         "length_m": done.path.length_m,
         "points_m": done.path.points_m.tolist(),
         "dependencies": done.dependencies,
-        "model": done.order.which,
+        "model": done.which,
         "seed": done.order.seed,
         "parameters": _parameters(done.fit),
         "vectors": prediction.vectors.tolist(),
         "durations_s": prediction.durations_s.tolist(),
         "not_arrived": prediction.lost,
+        "outside": done.fit.outside(done.dependencies),
     }
 
 
@@ -131,7 +158,7 @@ def sample_text(done: Sampled) -> str:
     lines = [
         (
             f"path of {done.path.length_m:.2f} m, {len(done.path.points_m)} points; model"
-            f" {done.order.which}, {count} walk(s), {found.lost} drawn that did not arrive"
+            f" {done.which}, {count} walk(s), {found.lost} drawn that did not arrive"
         ),
         "",
         f"  {'':<14}{'5 %':>8}{'25 %':>8}{'median':>8}{'75 %':>8}{'95 %':>8}",
@@ -141,11 +168,19 @@ def sample_text(done: Sampled) -> str:
     for name, column in columns:
         cells = "".join(f"{value:>8.2f}" for value in np.percentile(column, PERCENTILES))
         lines.append(f"  {name:<14}{cells}")
+    base = done.fit.database
+    for name in done.fit.outside(done.dependencies):
+        seen = base.vectors[:, base.names.index(name)]
+        lines.append(
+            f"  note: {name} {done.dependencies[name]:.2f} is outside what the model has seen,"
+            f" {seen.min():.2f} to {seen.max():.2f}: this is a guess"
+        )
     return "\n".join(lines)
 
 
-def evaluation_json(fit: FittedWalking, result: Evaluation) -> dict[str, object]:
+def evaluation_json(done: Evaluated) -> dict[str, object]:
     """Return the scores of `walk evaluate` for scripts."""
+    fit, result = done.fit, done.result
     models = {
         name: {
             "crps_s": outcome.mean_crps_s,
@@ -159,24 +194,40 @@ def evaluation_json(fit: FittedWalking, result: Evaluation) -> dict[str, object]
     }
     return {
         "walks": len(result.truth_s),
-        "people": len(set(result.subjects)),
+        "people": result.people,
         "fitted_on": len(fit.database.persons),
+        "in_sample_people": _in_sample(fit, result),
+        "left_out": _listed(done.left_out),
+        "notices": done.walks.notices,
         "models": _finite(models),
-        "comparisons": _finite([asdict(one) for one in result.comparisons()]),
+        "comparisons": [_comparison_json(one, result) for one in _comparisons(result)],
+        "against_baselines": [
+            {
+                "baseline": name,
+                "crps_less_s": gain_s,
+                "low_s": low_s,
+                "high_s": high_s,
+                "no_interval": _too_few(result),
+            }
+            for name, gain_s, low_s, high_s in _gains(result)
+        ],
         "saved_per_cycle_s": result.saved_per_cycle_s("prob", "stat"),
     }
 
 
-def evaluation_text(fit: FittedWalking, result: Evaluation) -> str:
+def evaluation_text(done: Evaluated) -> str:
     """Format the scores of `walk evaluate` for people."""
+    fit, result = done.fit, done.result
     lines = [
         (
-            f"{len(result.truth_s)} walks of {len(set(result.subjects))} people, model fitted on"
-            f" {len(fit.database.persons)} others; seconds"
+            f"{_counted(len(result.truth_s), 'walk')} of {_counted(result.people, 'person')},"
+            f" {_fitted_on(fit, result)}; seconds"
         ),
+        *_left_out_lines(done.left_out),
+        *(f"  {'notice':<14}{text}" for text in done.walks.notices),
         "",
         (
-            f"  {'model':<8}{'CRPS':>8}{'|dt|, one draw: 5 %':>22}{'25 %':>8}{'median':>8}"
+            f"  {'model':<15}{'CRPS':>8}{'|dt|, one draw: 5 %':>22}{'25 %':>8}{'median':>8}"
             f"{'75 %':>8}{'95 %':>8}{'in 50 %':>9}{'in 90 %':>9}"
         ),
     ]
@@ -186,14 +237,87 @@ def evaluation_text(fit: FittedWalking, result: Evaluation) -> str:
         inside = "".join(f"{100.0 * share:>8.0f}%" for share in result.coverage(name))
         cells = "".join(f"{value:>8.3f}" for value in others)
         shown = inside if outcome.draws_s.shape[1] > 1 else f"{'-':>9}{'-':>9}"
-        lines.append(f"  {name:<8}{outcome.mean_crps_s:>8.3f}{first:>22.3f}{cells}{shown}")
+        lines.append(f"  {name:<15}{outcome.mean_crps_s:>8.3f}{first:>22.3f}{cells}{shown}")
     lines.append("")
-    lines += [
-        f"  {one.first} against {one.second}, |dt| of one draw: Wilcoxon p {one.p:.3g},"
-        f" rank biserial {one.rank_biserial:+.2f}, power {one.power:.2f}"
-        for one in result.comparisons()
-    ]
+    lines += [_comparison_text(one, result) for one in _comparisons(result)]
+    for name, gain_s, low_s, high_s in _gains(result):
+        interval = (
+            ""
+            if low_s is None or high_s is None
+            else f", 95 % of people drawn again {low_s:+.3f} to {high_s:+.3f}"
+        )
+        lines.append(f"  {MIXED} against {name}: CRPS {gain_s:+.3f} s smaller{interval}")
+    if too_few := _too_few(result):
+        lines.append(f"  No intervals and no tests: {too_few}")
     return "\n".join(lines)
+
+
+def _counted(count: int, noun: str) -> str:
+    many = {"person": "people"}.get(noun, f"{noun}s")
+    return f"{count} {noun if count == 1 else many}"
+
+
+def _in_sample(fit: FittedWalking, result: Evaluation) -> list[str]:
+    """Return the evaluated people on whom the model was fitted, too."""
+    return sorted(set(result.subjects) & set(fit.database.subjects))
+
+
+def _fitted_on(fit: FittedWalking, result: Evaluation) -> str:
+    count, same = len(fit.database.persons), len(_in_sample(fit, result))
+    if not same:
+        return f"model fitted on {count} others"
+    whom = "all" if same == result.people else str(same)
+    return (
+        f"model fitted on {_counted(count, 'person')}, {whom} of these among them: figures are"
+        " in-sample and say nothing about other people"
+    )
+
+
+def _too_few(result: Evaluation) -> str | None:
+    """Return why neither intervals nor tests are given; None if there are enough people."""
+    return reason_for_no_interval(result.people)
+
+
+def _comparisons(result: Evaluation) -> list[Comparison]:
+    return result.comparisons(by_person=True)
+
+
+def _comparison_json(one: Comparison, result: Evaluation) -> dict[str, object]:
+    """Return a comparison over people; the figures of the test are null with too few of them."""
+    too_few = _too_few(result)
+    found: dict[str, object] = {**asdict(one), "n": result.people, "not_tested": too_few}
+    if too_few:
+        found |= dict.fromkeys(("p", "rank_biserial", "power"))
+    return {key: _finite(value) for key, value in found.items()}
+
+
+def _comparison_text(one: Comparison, result: Evaluation) -> str:
+    tested = (
+        ""
+        if _too_few(result)
+        else f"; Wilcoxon over n = {result.people} people, p {one.p:.3g}, rank biserial"
+        f" {one.rank_biserial:+.2f}, power {one.power:.2f}"
+    )
+    return (
+        f"  {one.first} against {one.second}, |dt| of one draw, mean of each person:"
+        f" {one.difference_s:+.3f} s{tested}"
+    )
+
+
+def _gains(result: Evaluation) -> list[tuple[str, float, float | None, float | None]]:
+    """Return by how much P_mixed's CRPS is smaller than each baseline's, with its interval.
+
+    With too few people the interval's ends are None.
+    """
+    rng = np.random.default_rng(1)
+    names = [curve.name for curve in BASELINES if curve.name in result.outcomes]
+    found: list[tuple[str, float, float | None, float | None]] = []
+    for name in names:
+        gain_s, low_s, high_s = result.better_by_s(MIXED, name, rng)
+        found.append(
+            (name, gain_s, None, None) if _too_few(result) else (name, gain_s, low_s, high_s)
+        )
+    return found
 
 
 def _parameters(fit: FittedWalking) -> list[str]:

@@ -20,7 +20,15 @@ from app.science.walking.maps import (
     database_of,
     maps_of,
 )
-from app.science.walking.models import FitOptions, FittedWalking, Prediction, Predictor, fitted
+from app.science.walking.models import (
+    FitOptions,
+    FittedWalking,
+    Prediction,
+    Predictor,
+    SteeringModel,
+    baseline_models,
+    fitted,
+)
 from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.recording import dependencies_of
 from app.science.walking.records import (
@@ -41,7 +49,7 @@ READINGS: dict[str, SuitabilityOptions | None] = {
     "paper": PAPER,
     "time-aware": TIME_AWARE,
 }
-MODELS = ("stat", "adapt", "prob")
+MODELS = ("mixed", "prob", "adapt", "stat")
 
 
 @dataclass(frozen=True)
@@ -79,7 +87,7 @@ class SampleOrder:
     goal: str | None = None
     stature_m: float | None = None
     count: int = 100
-    which: str = "prob"
+    which: str | None = None
     seed: int = 1
 
 
@@ -104,13 +112,33 @@ class Fitted:
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """The result of drawing from a model: the draws, with the path and the options."""
+    """The result of drawing from a model: the draws, with the path and the options.
+
+    Attributes:
+        which: the name of the model that was used.
+    """
 
     order: SampleOrder
+    which: str
     fit: FittedWalking
     path: PlannedPath
     dependencies: dict[str, float]
     prediction: Prediction
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluated:
+    """A model compared with recorded walks.
+
+    Attributes:
+        walks: the walks of the files, with those that could not be read as walks.
+        left_out: name and reason of each walk that is in no figure.
+    """
+
+    fit: FittedWalking
+    result: Evaluation
+    walks: Entries
+    left_out: tuple[tuple[str, str], ...]
 
 
 def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None = None) -> Fitted:
@@ -139,7 +167,7 @@ def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None =
 
 def carry_out_sample(order: SampleOrder) -> Sampled:
     """Draw from a model; raise ValueError or OSError."""
-    if order.which not in MODELS:
+    if order.which is not None and order.which not in MODELS:
         raise ValueError(f"--model {order.which!r}: {', '.join(MODELS)} are valid")
     if not 1 <= order.count <= 100_000:
         raise ValueError(f"--count {order.count}: 1 to 100000 are valid")
@@ -148,20 +176,22 @@ def carry_out_sample(order: SampleOrder) -> Sampled:
     dependencies = dependencies_of(path, order.stature_m)
     if STATURE in fit.database.names and order.stature_m is None:
         raise ValueError(f"{order.model} depends on stature: give --stature in metres")
-    predictor = Predictor(getattr(fit, order.which), SteeringFollower(rules))
+    model = fit.usual if order.which is None else fit.named(order.which)
+    predictor = Predictor(model, SteeringFollower(rules))
     rng = np.random.default_rng(order.seed)
     prediction = predictor.predict(path, dependencies, order.count, rng)
-    return Sampled(order, fit, path, dependencies, prediction)
+    return Sampled(order, model.name, fit, path, dependencies, prediction)
 
 
 def carry_out_evaluation(
     model: Path, walks: WalksOrder, *, draws: int, seed: int, even_fitted: bool
-) -> tuple[FittedWalking, Evaluation]:
+) -> Evaluated:
     """Compare a model with recorded walks; raise ValueError or OSError."""
     if not 1 <= draws <= 10_000:
         raise ValueError(f"--draws {draws}: 1 to 10000 are valid")
     fit, rules, _ = read_model(model)
-    entries = _read(walks).entries
+    read = _read(walks)
+    entries = read.entries
     fitted_on = {entry.walk.subject for entry in entries} & set(fit.database.subjects)
     if fitted_on and not even_fitted:
         raise ValueError(
@@ -170,9 +200,12 @@ def carry_out_evaluation(
         )
     rng = np.random.default_rng(seed)
     follower = SteeringFollower(rules)
-    return fit, evaluate(
-        fit.models, follower, entries, rng, draws=draws, course_of=lambda one: _course(one)
-    )
+    models: list[SteeringModel] = [*fit.models]
+    if fit.mixed is not None:
+        models = [fit.mixed, *models, *baseline_models(fit.database, rng)]
+    result = evaluate(models, follower, entries, rng, draws=draws, course_of=_course)
+    unpredicted = [(read.names[at], reason) for at, reason in sorted(result.left_out.items())]
+    return Evaluated(fit, result, read, (*read.left_out, *unpredicted))
 
 
 def _course(entry: PlannedWalk) -> str:

@@ -13,6 +13,7 @@ from app.lan.serving.listening import (
     SocketProtocol,
     allow_open_files,
     bind,
+    port_of,
     tls_context,
 )
 from app.lan.serving.plan import Plan, make_plan
@@ -31,5 +32,6 @@ __all__ = [
     "bind",
     "current_machine",
     "make_plan",
+    "port_of",
     "tls_context",
 ]

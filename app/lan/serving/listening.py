@@ -94,7 +94,8 @@ class LabServer(uvicorn.Server):
 def bind(hosts: Sequence[str], port: int, option: str) -> tuple[socket.socket, ...]:
     """Bind sockets to `port` at every one of `hosts`; IPv6 is skipped if it is unavailable.
 
-    Raises InvalidInput, naming the `option` that selects another port, if the port is taken.
+    For the port 0 the operating system chooses a free one, which is then that of all hosts. Raises
+    InvalidInput, naming the `option` that selects another port, if the port is taken.
     """
     bound: list[socket.socket] = []
     for host in hosts:
@@ -110,7 +111,14 @@ def bind(hosts: Sequence[str], port: int, option: str) -> tuple[socket.socket, .
                 value=port,
                 remedy=f"Stop the program that uses it, or choose another port with {option}",
             ) from error
+        port = port_of(bound)
     return tuple(bound)
+
+
+def port_of(sockets: Sequence[socket.socket]) -> int:
+    """Return the port to which sockets of one door are bound."""
+    port: int = sockets[0].getsockname()[1]
+    return port
 
 
 def tls_context() -> ssl.SSLContext:

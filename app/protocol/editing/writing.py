@@ -67,6 +67,22 @@ def item(value: Plain, indent: int, *, spread: bool = False) -> list[str]:
     return [" " * indent + "- " + first.lstrip(), *rest]
 
 
+def mapping_text(tree: dict[str, Plain]) -> str:
+    """Format a new file that people will edit: a part after another, a setting on each line."""
+    lines: list[str] = []
+    for key, value in tree.items():
+        if isinstance(value, dict) and value:
+            part = [f"{_word(key)}:", *_lines(value, 2)]
+        elif isinstance(value, list) and any(isinstance(one, dict) for one in value):
+            each = [line for one in value for line in item(one, 2, spread=True)]
+            part = [f"{_word(key)}:", *each]
+        else:
+            part = entry(key, value, 0)
+        gap = [""] if lines and len(part) > 2 else []
+        lines += [*gap, *part]
+    return "\n".join(lines) + "\n"
+
+
 def _lines(value: dict[str, Plain] | list[Plain], indent: int) -> list[str]:
     if isinstance(value, dict):
         return [line for key, one in value.items() for line in entry(key, one, indent)]

@@ -1,15 +1,28 @@
 """Fit a skeleton to markers or rigid bodies: joint centres, then axes, then bone lengths."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from app.science.anatomy import (
+    Notice,
+    handedness_of,
+    mirrored_bodies,
+    mirrored_markers,
+    mirrored_notice,
+    sentences,
+)
 from app.science.fitting.assembly import assemble
 from app.science.fitting.bodies import parts_of_bodies
-from app.science.fitting.landmarks import landmarks_of
+from app.science.fitting.constrained import constrained
+from app.science.fitting.label_checks import label_notice
+from app.science.fitting.landmarks import Landmarks, landmarks_of
 from app.science.fitting.lower_body import legs_of, pelvis_of
 from app.science.fitting.model import FitError, Fitted, Part, Parts
 from app.science.fitting.resampling import longest_run
 from app.science.fitting.upper_body import arms_of, head_of, trunk_of
-from app.science.rig import BodyMotion, BoolArray, MarkerMotion
+from app.science.rig import BodyMotion, BoolArray, MarkerMotion, RigMotion
+from app.science.rotations import FloatArray
 from app.science.skeleton import JOINT_NAMES
 
 _SHORTEST_S = 0.5
@@ -32,13 +45,52 @@ def fit_skeleton(motion: MarkerMotion | BodyMotion) -> Fitted:
         The movement of a rig whose joints are named like the body's, and what it leaves out.
 
     Raises:
-        FitError: the data do not contain a body, or not for half a second without a gap.
+        FitError: the data do not contain a body, or not for half a second without a gap, or what
+            they contain is no person's.
     """
+    notices: list[Notice] = []
     if isinstance(motion, BodyMotion):
-        core, limbs, rate_hz, notes = parts_of_bodies(motion)
+        fit = _fit_bodies(motion)
+        found = handedness_of(_places(fit.motion))
+        if found.is_mirrored:
+            share = 100.0 * max(found.agreeing.values())
+            value = f"{share:.0f} % of the elbows bend as those of people"
+            notices.append(mirrored_notice(value, "more than 20 %"))
+            fit = _fit_bodies(mirrored_bodies(motion))
     else:
-        core, limbs, notes = _parts_of_markers(motion)
-        rate_hz = motion.rate_hz
+        fit, notices = _fit_markers(motion)
+    lengths, changed = constrained(fit.motion)
+    told = (*notices, *changed)
+    return replace(fit, motion=lengths, notes=(*fit.notes, *sentences(told)), notices=told)
+
+
+def _fit_bodies(motion: BodyMotion) -> Fitted:
+    core, limbs, rate_hz, notes = parts_of_bodies(motion)
+    return _assembled(core, limbs, rate_hz, notes)
+
+
+def _fit_markers(motion: MarkerMotion) -> tuple[Fitted, list[Notice]]:
+    if motion.frame_count == 0:
+        raise FitError("The capture has no frames, so no skeleton can be fitted.")
+    marks = landmarks_of(motion)
+    wrong = label_notice(marks)
+    if wrong is not None and wrong.action == "refused":
+        raise FitError(wrong.sentence)
+    if wrong is not None:
+        marks = landmarks_of(mirrored_markers(motion))
+    core, limbs, notes = _parts_of_markers(marks)
+    fit = _assembled(core, limbs, motion.rate_hz, notes)
+    return fit, [] if wrong is None else [wrong]
+
+
+def _places(motion: RigMotion) -> dict[str, FloatArray]:
+    positions, _ = motion.world()
+    return {name: positions[:, joint] for joint, name in enumerate(motion.rig.names)}
+
+
+def _assembled(
+    core: Parts, limbs: dict[str, Parts], rate_hz: float, notes: tuple[str, ...]
+) -> Fitted:
     first, end, chosen, trimmed = _choose(core, limbs, rate_hz)
     kept = {name: _cut(part, first, end) for name, part in chosen.items()}
     fitted, residual_m = assemble(kept, rate_hz)
@@ -49,10 +101,7 @@ def fit_skeleton(motion: MarkerMotion | BodyMotion) -> Fitted:
     return Fitted(fitted, unfitted, residual_m, first, (*notes, *trimmed))
 
 
-def _parts_of_markers(motion: MarkerMotion) -> tuple[Parts, dict[str, Parts], tuple[str, ...]]:
-    if motion.frame_count == 0:
-        raise FitError("The capture has no frames, so no skeleton can be fitted.")
-    marks = landmarks_of(motion)
+def _parts_of_markers(marks: Landmarks) -> tuple[Parts, dict[str, Parts], tuple[str, ...]]:
     pelvis, spine = pelvis_of(marks)
     core = pelvis | legs_of(marks, pelvis)
     limbs: dict[str, Parts] = {}

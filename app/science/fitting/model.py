@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.science.anatomy import Notice
 from app.science.rig import BoolArray, RigMotion
 from app.science.rotations import FloatArray
 
@@ -25,7 +26,8 @@ class Fitted:
         residual_m: rms distance between the rig's joints and the joint centres of each frame, which
             bones of constant length cannot all reach.
         first_frame: the frame of the capture with which `motion` begins.
-        notes: sentences on what was trimmed, bridged or left out.
+        notes: sentences on what was trimmed, bridged or left out, and the notices as text.
+        notices: what anatomy does not allow, and how it was mended.
     """
 
     motion: RigMotion
@@ -33,6 +35,7 @@ class Fitted:
     residual_m: float
     first_frame: int = 0
     notes: tuple[str, ...] = ()
+    notices: tuple[Notice, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

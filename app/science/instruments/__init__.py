@@ -4,7 +4,12 @@ An `Instrument` is checked when it is created, so every instance is consistent. 
 are read by `instruments.table`, which loads pandas.
 """
 
-from app.science.instruments.answers import fits, valid_answers, validate_answers
+from app.science.instruments.answers import (
+    fits,
+    straight_lined,
+    valid_answers,
+    validate_answers,
+)
 from app.science.instruments.errors import (
     AnswerError,
     DefinitionProblem,
@@ -16,7 +21,7 @@ from app.science.instruments.errors import (
 )
 from app.science.instruments.explained import ExplainedScore, explain_scoring
 from app.science.instruments.formula import names_in
-from app.science.instruments.instrument import Instrument, item_order
+from app.science.instruments.instrument import Instrument, is_key, item_order
 from app.science.instruments.item_checks import text_problems
 from app.science.instruments.items import Choice, Item, Provenance, Scale, Score, Text
 from app.science.instruments.scoring import score_answers, scores_of_columns
@@ -38,11 +43,13 @@ __all__ = [
     "Text",
     "explain_scoring",
     "fits",
+    "is_key",
     "item_order",
     "names_in",
     "score_answers",
     "scores_of_columns",
     "shortened",
+    "straight_lined",
     "text_problems",
     "valid_answers",
     "validate_answers",

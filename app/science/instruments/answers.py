@@ -1,16 +1,22 @@
-"""Validation of answers: for forms (all problems at once) and for scoring (as numbers)."""
+"""Validation of answers: for forms (all problems at once) and for scoring (as numbers).
+
+Forms on which somebody gave one rating throughout are valid, but studies may exclude them.
+"""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.science.instruments.errors import AnswerError, shortened
 from app.science.instruments.instrument import Instrument
 from app.science.instruments.item_checks import DEFAULT_TEXT_LENGTH
 from app.science.instruments.items import Item
 
+FEWEST_RATINGS = 5
+"""Fewest ratings of a form for which identical ratings count as straight-lining."""
 _NUMBERS = (int, float, np.integer, np.floating)
 
 
@@ -120,3 +126,20 @@ def _limits(item: Item) -> tuple[float, float]:
     low = -math.inf if item.minimum is None else item.minimum
     high = math.inf if item.maximum is None else item.maximum
     return low, high
+
+
+def straight_lined(ratings: NDArray[np.float64], *, one_sided: bool) -> NDArray[np.bool_]:
+    """Return for each form whether all its ratings are identical.
+
+    Args:
+        ratings: (..., items) raw ratings of complete forms.
+        one_sided: whether all items of the instrument point the same way. Then the lowest rating,
+            0, can be an honest answer to all of them, and does not count.
+
+    Returns:
+        (...) True for a straight-lined form; all False for fewer than `FEWEST_RATINGS` items.
+    """
+    if ratings.shape[-1] < FEWEST_RATINGS:
+        return np.zeros(ratings.shape[:-1], dtype=np.bool_)
+    alike: NDArray[np.bool_] = (ratings == ratings[..., :1]).all(axis=-1)
+    return alike & (ratings[..., 0] != 0.0) if one_sided else alike

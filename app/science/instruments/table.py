@@ -18,11 +18,13 @@ import pandas as pd
 
 from app.science.instruments.answers import as_number
 from app.science.instruments.errors import AnswerError, InstrumentTableError, shortened
+from app.science.instruments.formula import names_in
 from app.science.instruments.instrument import Instrument
 from app.science.instruments.items import Item
 from app.science.instruments.scoring import FloatArray, scores_of_columns
 
-__all__ = ["score_csv", "score_table"]
+__all__ = ["Scored", "score_csv", "score_table", "scored_csv"]
+_NAMED_ROWS = 5
 _SEPARATORS = (",", ";", "\t")
 _MISSING = frozenset({"", "na", "n/a", "nan", "null", "none"})
 _YES_NO = {"true": True, "yes": True, "false": False, "no": False}
@@ -36,7 +38,20 @@ class _Row:
     cells: list[str]
 
 
+@dataclass(frozen=True)
+class Scored:
+    """A scored table as CSV, and sentences on scores that have no value: how many, where, why."""
+
+    text: str
+    notes: tuple[str, ...]
+
+
 def score_csv(instrument: Instrument, text_in: str) -> str:
+    """Return the `text` of `scored_csv`."""
+    return scored_csv(instrument, text_in).text
+
+
+def scored_csv(instrument: Instrument, text_in: str) -> Scored:
     r"""Score a CSV of raw answers: id columns unchanged, then one column for each score.
 
     `text_in`: a header line, then one row for each completed form; columns named like items contain
@@ -62,7 +77,42 @@ def score_csv(instrument: Instrument, text_in: str) -> str:
         table = score_table(instrument, frame)
     except AnswerError as error:
         raise _with_location(error, instrument, header, rows) from error
-    return _to_csv(table, [score.key for score in instrument.scores])
+    notes = _notes_on_empty_scores(instrument, header, rows, table)
+    return Scored(_to_csv(table, [score.key for score in instrument.scores]), notes)
+
+
+def _notes_on_empty_scores(
+    instrument: Instrument, header: list[str], rows: list[_Row], table: pd.DataFrame
+) -> tuple[str, ...]:
+    """Return a sentence for each score that lacks a value in some rows."""
+    at = {_item_name(instrument, name): position for position, name in enumerate(header)}
+    notes = []
+    for key, needed in _items_of_scores(instrument).items():
+        without = [row for row, value in zip(rows, table[key], strict=True) if value != value]
+        if not without:
+            continue
+        absent = [item for item in needed if item not in at]
+        if absent:
+            why = f"there is no column {', '.join(absent)}"
+        else:
+            places = []
+            for row in without[:_NAMED_ROWS]:
+                empty = [item for item in needed if _cell(row.cells[at[item]]) is None]
+                places.append(f"line {row.line} ({', '.join(empty) or 'division by zero'})")
+            more = len(without) - len(places)
+            why = f"{', '.join(places)}{f' and {more} more' if more else ''}"
+            why = f"an answer that it needs is missing: {why}"
+        notes.append(f"{len(without)} of {len(rows)} rows have no {key}; {why}")
+    return tuple(notes)
+
+
+def _items_of_scores(instrument: Instrument) -> dict[str, list[str]]:
+    """Return score -> the items it needs, also through other scores, in the order of the items."""
+    needed: dict[str, frozenset[str]] = {}
+    for key, tree in instrument.formulas.items():
+        names = names_in(tree)
+        needed[key] = names.union(*(needed[name] for name in names & needed.keys()))
+    return {key: [item for item in instrument.by_key if item in own] for key, own in needed.items()}
 
 
 def _read(instrument: Instrument, text: str) -> tuple[str, list[str], list[_Row]]:

@@ -5,11 +5,13 @@ an avatar, optionally with feet locked to the ground, and `Retargeter` does so f
 `verify` and `check_table1` check the result.
 """
 
+from app.science.retargeting.anatomy_checks import checked_skeleton
 from app.science.retargeting.finger_names import finger_bones_of
 from app.science.retargeting.fingers import captured_fingers, has_fingers
 from app.science.retargeting.gait import Walk
+from app.science.retargeting.generated_walk import example_walk
 from app.science.retargeting.ground import Flat, Ground, Ramp, Steps
-from app.science.retargeting.in_place import movement_in_place
+from app.science.retargeting.in_place import movement_in_place, movement_travelling
 from app.science.retargeting.joint_chains import is_below
 from app.science.retargeting.joint_map import (
     JointMap,
@@ -21,7 +23,7 @@ from app.science.retargeting.joint_map import (
     unmapped_rig_joints,
 )
 from app.science.retargeting.leg_angles import LegAngles
-from app.science.retargeting.pipeline import Retargeted, Walks, retarget_motion
+from app.science.retargeting.pipeline import FloorClearance, Retargeted, Walks, retarget_motion
 from app.science.retargeting.plan import IntArray
 from app.science.retargeting.reference_avatars import (
     REFERENCE_JOINT_MAP,
@@ -41,6 +43,7 @@ __all__ = [
     "AvatarError",
     "AvatarFigures",
     "Flat",
+    "FloorClearance",
     "Ground",
     "IntArray",
     "JointMap",
@@ -58,10 +61,13 @@ __all__ = [
     "captured_fingers",
     "check_joint_map",
     "check_table1",
+    "checked_skeleton",
+    "example_walk",
     "finger_bones_of",
     "has_fingers",
     "is_below",
     "movement_in_place",
+    "movement_travelling",
     "named_avatar",
     "named_stature_m",
     "propose_joint_map",

@@ -8,7 +8,9 @@ holds each foot, during each contact of the *source*, at one place:
     ankle(t) = unlocked ankle(t) + c(t).
 
 Between two contacts c changes smoothly from the end of one to the start of the next, before the
-first and after the last it is constant, so nothing pops. Feet keep their orientation, so they still
+first and after the last it is constant, so nothing pops. On flat ground a foot is then lifted,
+smoothly, where its lowest point would still be under the floor: a toe that was measured pointing
+down, most of all while the foot leaves the ground. Feet keep their orientation, so they still
 roll from heel to toe, and legs reach for the ankles (`leg_reach`). The body rises and sinks with
 its feet: the hips are raised by the smoothed mean of both corrections' heights, and so follow a
 ground that was not in the capture. Where a leg is then too short, the hips are lowered by a limited
@@ -28,6 +30,7 @@ from app.science.retargeting.leg_reach import Reach, longest_m, reach_for
 from app.science.retargeting.legs import Leg, Legs, legs_of
 from app.science.rig import Rig, RigError, RigMotion, to_local, to_world
 from app.science.rotations import FloatArray, multiply
+from app.science.skeleton import clearance_m
 
 _FLAT = Flat()
 # A foot that misses its place by less than this is not visible.
@@ -42,11 +45,14 @@ class LockLimits:
         smoothing_s: time over which the hips' rise and fall is smoothed, either way.
         settling_s: time in which a foot returns to its own speed before and after a contact.
         deepest: largest lowering of the hips to let both feet reach, in leg lengths.
+        sunk_m: depth of a foot's lowest point under flat ground that is left as it is: soles give
+            by about as much.
     """
 
     smoothing_s: float = 0.2
     settling_s: float = 0.15
     deepest: float = 0.04
+    sunk_m: float = 0.008
 
 
 _DEFAULT = LockLimits()
@@ -62,6 +68,7 @@ class LockedFeet:
             any contact.
         lowered_m: largest lowering of the hips to let the legs reach.
         out_of_reach: frames in which a foot in contact could not reach its place, both feet added.
+        lifted_m: largest lift of a foot that keeps its lowest point above flat ground.
     """
 
     motion: RigMotion
@@ -69,6 +76,7 @@ class LockedFeet:
     slide_after_m_s: float | None
     lowered_m: float
     out_of_reach: int
+    lifted_m: float
 
 
 def lock_feet(
@@ -101,6 +109,11 @@ def lock_feet(
     reach = max(1, round(limits.smoothing_s * motion.rate_hz))
     raise_m = np.zeros((motion.frame_count, 3))
     raise_m[:, 1] = _smooth(shifts[..., 1].mean(axis=0), reach)
+    # The hips do not follow: raised with one foot, they would overstretch the other leg.
+    lift_m = np.zeros(shifts.shape[:2])
+    if isinstance(ground, Flat):
+        lift_m = _lift_m(positions, world, legs, shifts, ground.level_m, motion.rate_hz, limits)
+        shifts[..., 1] += lift_m
     targets = shifts + np.stack([positions[:, leg.foot] for leg in legs.both])
     raised = positions + raise_m[:, np.newaxis]
     lowered = _hip_lowering(raised, legs, targets, limits.deepest * legs.length_m, reach)
@@ -114,7 +127,24 @@ def lock_feet(
         mean_slide_m_s(legs.balls_m(*locked.world()), contacts),
         float(lowered.max()),
         int(missed.sum()),
+        float(lift_m.max()),
     )
+
+
+def _lift_m(
+    positions_m: FloatArray,
+    world: FloatArray,
+    legs: Legs,
+    shifts_m: FloatArray,
+    level_m: float,
+    rate_hz: float,
+    limits: LockLimits,
+) -> FloatArray:
+    """Return by how much each foot is lifted, (2, N), so that it stays above flat ground."""
+    lowest_m = np.stack([leg.lowest_m(positions_m, world) for leg in legs.both])
+    above_m = lowest_m + shifts_m[..., 1] - level_m
+    lifts = [clearance_m(one, rate_hz, allowed_m=limits.sunk_m) for one in above_m]
+    return np.stack(lifts)
 
 
 def _hip_lowering(

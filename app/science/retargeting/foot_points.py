@@ -6,8 +6,16 @@ import numpy as np
 
 from app.science.retargeting.joint_chains import is_below
 from app.science.retargeting.joint_map import JointMap
-from app.science.rig import Rig
-from app.science.rotations import FloatArray, Quaternion, Vector, q_multiply, q_rotate, v_add
+from app.science.rig import Rig, RigMotion
+from app.science.rotations import (
+    FloatArray,
+    Quaternion,
+    Vector,
+    q_multiply,
+    q_rotate,
+    rotate,
+    v_add,
+)
 
 _FOOT_PARTS = ("LeftFoot", "LeftToes", "RightFoot", "RightToes")
 
@@ -51,3 +59,9 @@ class FootPoints:
             turns[joint] = q_multiply(turns[parent], local[joint])
         points = [v_add(places[j], q_rotate(turns[j], at)) for j, at in self._points]
         return np.array(points)
+
+    def all_places_m(self, motion: RigMotion) -> FloatArray:
+        """Return the positions of the points in all frames, (N, P, 3)."""
+        positions, world = motion.world()
+        places = [positions[:, j] + rotate(world[:, j], np.array(at)) for j, at in self._points]
+        return np.stack(places, axis=1)

@@ -1,10 +1,14 @@
-"""Convert a capture to the movement of a body that stays in place.
+"""Convert a capture to the movement of the product's body on a floor, in place or travelling.
 
 A session takes many minutes and a captured walk a few seconds. A walk that is to accompany a
 session is therefore retargeted to the participant's skeleton, and its slow travel and slow turning
 are removed: it becomes walking on the spot, facing -z, with standing feet flat on the floor.
 `skeleton.loop` then makes it endless. Legs that a capture does not contain are straight beneath the
 hips.
+
+To follow a person's own path, `movement_travelling` leaves travel and turning as they are. There
+the floor of a capture drifts, and a physics body whose feet are to be under the floor is held up
+by them and bends elsewhere, so the body is also raised smoothly where a sole would sink.
 """
 
 import numpy as np
@@ -19,9 +23,11 @@ from app.science.skeleton import (
     Movement,
     Skeleton,
     SkeletonError,
+    clearance_m,
     continuous,
     flat_soles,
     ground_height,
+    sole_height,
 )
 
 # Longer than a stride, shorter than a turn of the walk.
@@ -43,6 +49,22 @@ def movement_in_place(source: RigMotion, joint_map: JointMap, skeleton: Skeleton
         JointMapError: the map does not match the capture's skeleton.
         SkeletonError: the capture has fewer than two frames.
     """
+    return _movement(source, joint_map, skeleton, in_place=True)
+
+
+def movement_travelling(source: RigMotion, joint_map: JointMap, skeleton: Skeleton) -> Movement:
+    """Retarget a capture to a skeleton with the person's own travel and turning, on the floor.
+
+    A standing foot is flat, and no sole is under the floor.
+
+    It raises the same errors as `movement_in_place`.
+    """
+    return _movement(source, joint_map, skeleton, in_place=False)
+
+
+def _movement(
+    source: RigMotion, joint_map: JointMap, skeleton: Skeleton, *, in_place: bool
+) -> Movement:
     if source.frame_count < 2:
         raise SkeletonError(
             "A capture of one frame contains no movement: give at least two frames."
@@ -50,12 +72,16 @@ def movement_in_place(source: RigMotion, joint_map: JointMap, skeleton: Skeleton
     avatar = reference_avatar(skeleton.stature_m)
     retargeter = Retargeter(source.rig, joint_map, avatar, REFERENCE_JOINT_MAP)
     moved = retargeter.batch(source)
-    _, world = to_world(avatar, moved.root_positions_m, moved.rotations)
-    world, root = _in_place(world, moved.root_positions_m, _PATH_SMOOTHING_S * source.rate_hz)
+    root = moved.root_positions_m.copy()
+    _, world = to_world(avatar, root, moved.rotations)
+    if in_place:
+        world, root = _in_place(world, root, _PATH_SMOOTHING_S * source.rate_hz)
     if not set(_LEGS) & set(retargeter.carried):
         world, root = _standing(world, root, skeleton)
     world = flat_soles(world, skeleton, root)
     root[:, 1] -= ground_height(world, skeleton, root)
+    if not in_place:
+        root[:, 1] += clearance_m(sole_height(world, skeleton, root), source.rate_hz)
     return Movement(source.rate_hz, root, continuous(to_local(avatar, world)))
 
 

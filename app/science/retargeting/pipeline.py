@@ -1,7 +1,8 @@
 """Retarget a movement to an avatar and measure both walks.
 
 This is what a command, a server and a rehearsal all do with a capture once it is read: transfer it
-(`transfer`), lock the feet if requested (`foot_locking`), and measure the walk (`gait`). Both walks
+(`transfer`), lock the feet if requested (`foot_locking`), else raise the body where its feet would
+be under flat ground (`skeleton.clearance`), and measure the walk (`gait`). Both walks
 are measured over the source's contacts, so step number i is the same step in both, and under
 uniform scaling the ratio of their lengths is that of the legs.
 """
@@ -10,8 +11,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from app.science.anatomy import Notice
+from app.science.retargeting.anatomy_checks import (
+    sides_notice,
+    stature_notice,
+    step_height_notice,
+    toes_notice,
+)
 from app.science.retargeting.contacts import find_contacts
 from app.science.retargeting.foot_locking import LockedFeet, lock_feet
+from app.science.retargeting.foot_points import FootPoints
 from app.science.retargeting.gait import Walk, walk_figures
 from app.science.retargeting.ground import Flat, Ground
 from app.science.retargeting.joint_map import JointMap
@@ -19,10 +28,14 @@ from app.science.retargeting.legs import has_legs, legs_of
 from app.science.retargeting.proportions import ScaledBy
 from app.science.retargeting.transfer import Retargeter
 from app.science.rig import Rig, RigError, RigMotion
+from app.science.rotations import FloatArray
+from app.science.skeleton import clearance_m
 
 _FLAT = Flat()
 # About half a step: the time in which a body goes up or down an edge.
 _EASING_S = 0.3
+# In heights of the avatar's T-pose, so that bodies of all sizes sink alike: 4 mm for 165 cm.
+_ALLOWED_DEPTH = 0.003
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +59,25 @@ class Walks:
         return self.avatar.slide_m_s
 
 
+@dataclass(frozen=True)
+class FloorClearance:
+    """How deep an avatar's feet are under the ground, and what keeping them above it costs.
+
+    Attributes:
+        sunk_m: greatest depth of a joint or end of the feet without any correction, at least 0.
+        left_m: the same in the result.
+        raised_m, mean_raised_m: by how much the body is raised at most, and on average over all
+            frames; feet float by as much. Zero with locked feet and on uneven ground.
+        lifted_m: with locked feet on flat ground, by how much a single foot is lifted at most.
+    """
+
+    sunk_m: float
+    left_m: float
+    raised_m: float
+    mean_raised_m: float
+    lifted_m: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class Retargeted:
     """A movement retargeted to an avatar.
@@ -58,6 +90,8 @@ class Retargeted:
         unmapped_avatar_joints: joints that keep their T-pose.
         unmapped_source_joints: joints that move no joint of the avatar themselves.
         walks: measures of both walks; None where one of the bodies has no legs.
+        floor: how deep the feet are, and by how much the body was raised.
+        notices: what the walk shows to be wrong with the capture or its map (`anatomy_checks`).
     """
 
     motion: RigMotion
@@ -67,6 +101,8 @@ class Retargeted:
     unmapped_avatar_joints: tuple[str, ...]
     unmapped_source_joints: tuple[str, ...]
     walks: Walks | None
+    floor: FloorClearance
+    notices: tuple[Notice, ...] = ()
 
     @property
     def leg_ratio(self) -> float | None:
@@ -109,12 +145,50 @@ def retarget_motion(
     moved = retargeter.batch(source, _FLAT if lock else ground, standing_frame=standing_frame)
     if not lock:
         moved = _smooth_edges(retargeter, moved, ground)
+    sunk_m = _depth_m(retargeter.foot_points, moved, ground)
+    raise_m = np.zeros(moved.frame_count)
+    if not lock and isinstance(ground, Flat):
+        raise_m = _clearance_m(retargeter, moved, ground)
+        moved = _raised(moved, raise_m)
     walks = _walks(source, source_map, moved, avatar_map, ground, lock=lock) if legged else None
     locked = None if walks is None else walks.locked
-    return _result(retargeter, moved if locked is None else locked.motion, walks)
+    motion = moved if locked is None else locked.motion
+    left_m = _depth_m(retargeter.foot_points, motion, ground)
+    floor = FloorClearance(
+        sunk_m,
+        left_m,
+        float(raise_m.max()),
+        float(raise_m.mean()),
+        0.0 if locked is None else locked.lifted_m,
+    )
+    notices = (
+        sides_notice(source, source_map),
+        toes_notice(source, source_map),
+        stature_notice(None if walks is None else walks.source.leg_length_m),
+        _step_notice(walks, retargeter.scale),
+    )
+    found = tuple(notice for notice in notices if notice is not None)
+    return replace(_result(retargeter, motion, walks, floor), notices=found)
 
 
-def _result(retargeter: Retargeter, motion: RigMotion, walks: Walks | None) -> Retargeted:
+def _step_notice(walks: Walks | None, leg_ratio: float) -> Notice | None:
+    if walks is None:
+        return None
+    heights = (walks.source.mean_step_height_m, walks.avatar.mean_step_height_m)
+    return step_height_notice(*heights, leg_ratio)
+
+
+def _clearance_m(retargeter: Retargeter, moved: RigMotion, ground: Ground) -> FloatArray:
+    """Return by how much the body is raised, (N,), so that its feet stay above flat ground."""
+    height = _foot_height_m(retargeter.foot_points, moved, ground)
+    heights = retargeter.avatar_t_pose.positions_m[:, 1]
+    allowed_m = _ALLOWED_DEPTH * float(np.ptp(heights))
+    return clearance_m(height, moved.rate_hz, allowed_m=allowed_m)
+
+
+def _result(
+    retargeter: Retargeter, motion: RigMotion, walks: Walks | None, floor: FloorClearance
+) -> Retargeted:
     return Retargeted(
         motion=motion,
         scale=retargeter.scale,
@@ -123,7 +197,27 @@ def _result(retargeter: Retargeter, motion: RigMotion, walks: Walks | None) -> R
         unmapped_avatar_joints=retargeter.unmapped_avatar_joints,
         unmapped_source_joints=retargeter.unmapped_source_joints,
         walks=walks,
+        floor=floor,
     )
+
+
+def _depth_m(points: FootPoints, motion: RigMotion, ground: Ground) -> float:
+    return max(0.0, -float(_foot_height_m(points, motion, ground).min()))
+
+
+def _foot_height_m(points: FootPoints, motion: RigMotion, ground: Ground) -> FloatArray:
+    """Return the height of the lowest joint or end of the feet above the ground, (N,)."""
+    places = points.all_places_m(motion)
+    heights = places[..., 1] - ground.height_m(places[..., 0], places[..., 2])
+    return np.asarray(heights.min(axis=1))
+
+
+def _raised(motion: RigMotion, raise_m: FloatArray) -> RigMotion:
+    if not raise_m.any():
+        return motion
+    root = motion.root_positions_m.copy()
+    root[:, 1] += raise_m
+    return replace(motion, root_positions_m=root)
 
 
 def _smooth_edges(retargeter: Retargeter, moved: RigMotion, ground: Ground) -> RigMotion:

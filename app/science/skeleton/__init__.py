@@ -1,5 +1,6 @@
 """Model the 22-joint body of Reembody: joints, proportions, forward kinematics and movement."""
 
+from app.science.skeleton.clearance import clearance_m
 from app.science.skeleton.fingers import (
     FINGER_COUNT,
     FINGER_PARTS,
@@ -25,18 +26,26 @@ from app.science.skeleton.movement import (
     mean_rotations,
     resample,
 )
-from app.science.skeleton.soles import flat_soles, ground_height
+from app.science.skeleton.soles import (
+    HALF_FOOT_BREADTH,
+    TOES_JOINT_HEIGHT,
+    flat_soles,
+    ground_height,
+    sole_height,
+)
 
 __all__ = [
     "FINGERS",
     "FINGER_COUNT",
     "FINGER_PARTS",
+    "HALF_FOOT_BREADTH",
     "JOINT_COUNT",
     "JOINT_INDEX",
     "JOINT_NAMES",
     "PARENTS",
     "PARTS_PER_HAND",
     "SEGMENTS",
+    "TOES_JOINT_HEIGHT",
     "BodySegments",
     "Movement",
     "Pose",
@@ -45,6 +54,7 @@ __all__ = [
     "WorldPose",
     "body_part_segments",
     "build_skeleton",
+    "clearance_m",
     "continuous",
     "finger_of",
     "flat_soles",
@@ -54,4 +64,5 @@ __all__ = [
     "loop",
     "mean_rotations",
     "resample",
+    "sole_height",
 ]

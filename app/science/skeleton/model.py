@@ -1,4 +1,4 @@
-"""Build the skeleton of one person from the stature.
+"""Build the skeleton of one person from the stature, and the arms where they were measured.
 
 Rest pose: the T-pose, every local rotation the identity, world axes x right, y up, -z forward, so
 the left arm runs along -x and the feet point to -z. Lengths are fractions of the stature H.
@@ -15,7 +15,9 @@ behind the ankle; all radii. They determine capsules and the look of the figure;
 of ours depends on them.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
@@ -24,6 +26,10 @@ from app.science.rotations import FloatArray
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES, PARENTS
 
 _LOWEST_STATURE_M, _HIGHEST_STATURE_M = 0.5, 2.6
+_LEAST_STRETCH, _MOST_STRETCH = 0.3, 3.0
+_MEASURED = {"upper_arm": ("UpperArm", "LowerArm"), "forearm": ("LowerArm", "Hand")}
+"""Whose bone a measured segment is, and the joint at which it ends."""
+NOTHING_MEASURED: Mapping[str, float] = MappingProxyType({})
 
 # Joint positions in the T-pose as fractions of the stature, (x right, y up, z back), right side.
 _CENTRE = {
@@ -126,11 +132,19 @@ class Skeleton:
         return float(np.linalg.norm(self.offsets_m[JOINT_INDEX[joint]]))
 
 
-def build_skeleton(stature_m: float) -> Skeleton:
+def build_skeleton(
+    stature_m: float, segments_m: Mapping[str, float] = NOTHING_MEASURED
+) -> Skeleton:
     """Build the skeleton of a person of this stature.
 
+    Args:
+        stature_m: body height.
+        segments_m: measured lengths of both sides by the names of an avatar's segments; upper_arm
+            and forearm are used, other bones are fractions of the stature.
+
     Raises:
-        SkeletonError: the stature is not between 0.5 and 2.6 m (a value in cm is the usual cause).
+        SkeletonError: the stature is not between 0.5 and 2.6 m (a value in cm is the usual cause),
+            or an arm is not between 0.3 and 3 times as long as usual.
     """
     if not _LOWEST_STATURE_M <= stature_m <= _HIGHEST_STATURE_M:
         raise SkeletonError(
@@ -144,12 +158,28 @@ def build_skeleton(stature_m: float) -> Skeleton:
             offsets[joint] = places[joint] - places[parent]
     for joint, name in enumerate(JOINT_NAMES):
         ends[joint] = _end(name, joint, places)
+    for segment, (part, end_at) in _MEASURED.items():
+        if segment in segments_m:
+            stretch = _stretch(segment, segments_m[segment] / stature_m, offsets, end_at)
+            for side in ("Left", "Right"):
+                offsets[JOINT_INDEX[side + end_at]] *= stretch
+                ends[JOINT_INDEX[side + part]] *= stretch
     radii = np.array([_RADIUS[_part(name)] for name in JOINT_NAMES])
     starts, stops = _capsule_axes(ends, radii)
     scaled = [stature_m * array for array in (offsets, ends, starts, stops, radii)]
     for array in scaled:
         array.flags.writeable = False
     return Skeleton(stature_m, *scaled)
+
+
+def _stretch(segment: str, fraction: float, offsets: FloatArray, end_at: str) -> float:
+    usual = float(np.linalg.norm(offsets[JOINT_INDEX["Left" + end_at]]))
+    if not _LEAST_STRETCH < fraction / usual < _MOST_STRETCH:
+        raise SkeletonError(
+            f"A {segment} of {fraction:.3f} times the stature does not fit a body, whose usual one "
+            f"is {usual:.3f}: give its length in metres."
+        )
+    return fraction / usual
 
 
 def _part(name: str) -> str:

@@ -8,6 +8,7 @@
     cronbach_alpha, mcdonald_omega      reliability of scales
     bootstrap_interval, mean_interval, within_subject_intervals, spearman
     rm_anova_power, subjects_needed     planning
+    clopper_pearson                     the interval of a proportion
     against_reference, directional      tests that a study declares beforehand
     share_of_maximum, contact_shares, explore
 
@@ -50,7 +51,7 @@ from app.science.statistics.planned import (
 from app.science.statistics.power import Expected, rm_anova_power, subjects_needed
 from app.science.statistics.reliability import cronbach_alpha, mcdonald_omega
 from app.science.statistics.rm_anova import RmAnova, rm_anova
-from app.science.statistics.shares import contact_shares, share_of_maximum
+from app.science.statistics.shares import clopper_pearson, contact_shares, share_of_maximum
 from app.science.statistics.signed_rank import signed_rank
 from app.science.statistics.spearman import Spearman, spearman
 from app.science.statistics.split_plot import split_plot_anova
@@ -91,6 +92,7 @@ __all__ = [
     "as_number",
     "bootstrap_interval",
     "cells_of",
+    "clopper_pearson",
     "complete_rows",
     "contact_shares",
     "cronbach_alpha",

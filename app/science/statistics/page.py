@@ -5,9 +5,11 @@ the levels in the predicted order, L = sum_j j R_j. It is a one-sided test of an
 beforehand: mean 1 <= mean 2 <= ... <= mean k, with at least one true inequality.
 
 `p` follows the published tables, as in scipy: P(L' >= floor(L)) over all orders without ties; with
-ties that is usually too large. `p_given_ties` is from the permutation distribution of the observed
-ranks, which is exact with and without ties. Without ties the two are equal. `p_asymptotic` is from
-a normal distribution with mean n k (k + 1)^2 / 4 and variance n k^2 (k + 1) (k^2 - 1) / 144.
+ties that is not the chance of these data, and may be too large or too small. `p_given_ties` is from
+the permutation distribution of the observed ranks, which is exact with and without ties. Without
+ties the two are equal. `p_asymptotic` is from a normal distribution with mean n k (k + 1)^2 / 4 and
+variance n k^2 (k + 1) (k^2 - 1) / 144. Results are reported by `p_rises` and `p_falls`, which are
+exact given the ties wherever that can be computed.
 
 Page 1963, J. Am. Stat. Assoc. 58:216-230; van de Wiel and Di Bucchianico 2001, J. Stat. Plan.
 Inference 92:1-13.
@@ -34,9 +36,10 @@ class PageTrend:
 
     Attributes:
         statistic: the statistic L of the levels in the given order.
-        p: the one-sided p value for a rise, computed by `method`.
+        p: the one-sided p value for a rise, by the tables without ties or asymptotic.
         p_falling: the one-sided p value for a fall: the same test with the order reversed.
         p_given_ties: like `p`, exact for the observed ties; NaN where asymptotic.
+        p_falling_given_ties: like `p_falling`, exact for the observed ties; NaN where asymptotic.
         p_asymptotic: like `p`, from the normal distribution.
         method: "exact" up to 7 levels and 50 subjects, else "asymptotic".
     """
@@ -45,10 +48,21 @@ class PageTrend:
     p: float
     p_falling: float
     p_given_ties: float
+    p_falling_given_ties: float
     p_asymptotic: float
     method: Literal["exact", "asymptotic"]
     n: int
     levels: int
+
+    @property
+    def p_rises(self) -> float:
+        """The p value to report for a rise: exact given the ties, else asymptotic."""
+        return self.p_given_ties if self.method == "exact" else self.p
+
+    @property
+    def p_falls(self) -> float:
+        """The p value to report for a fall: exact given the ties, else asymptotic."""
+        return self.p_falling_given_ties if self.method == "exact" else self.p_falling
 
 
 def page_trend(blocks: npt.ArrayLike) -> PageTrend:
@@ -73,6 +87,7 @@ def page_trend(blocks: npt.ArrayLike) -> PageTrend:
         # Reversing the order changes L to n k (k + 1)^2 / 2 - L.
         p_falling=_without_ties(n, k, highest - statistic) if exact else 1.0 - asymptotic,
         p_given_ties=_with_ties(ranks, statistic) if exact else math.nan,
+        p_falling_given_ties=_with_ties(ranks, highest - statistic) if exact else math.nan,
         p_asymptotic=asymptotic,
         method="exact" if exact else "asymptotic",
         n=n,
@@ -96,6 +111,7 @@ def _tie_free_tails(n: int, k: int) -> tuple[int, FloatArray]:
 
 
 def _with_ties(ranks: FloatArray, statistic: float) -> float:
+    """Return P(L' >= L) over all orders of each subject's ranks; for a fall, of the reversed L."""
     doubled = np.sort(np.rint(2.0 * ranks).astype(np.int64), axis=1)
     rows = [_row_distribution(tuple(row)) for row in doubled.tolist()]
     tails = _tails([row for _, row in rows])

@@ -107,15 +107,14 @@ def directional(
         raise StatisticsError(f"The direction {predicted!r} is unknown; valid: rises, falls.")
     table = np.asarray(values, dtype=np.float64)
     rows, left_out = complete_rows(table)
-    # A fall is a rise along the reversed levels.
-    trend = page_trend(rows if predicted == "rises" else rows[:, ::-1])
-    p = trend.p_given_ties if trend.method == "exact" else trend.p_asymptotic
+    trend = page_trend(rows)
+    p = trend.p_rises if predicted == "rises" else trend.p_falls
     alternative: Alternative = "greater" if predicted == "rises" else "less"
     return DirectionalHypothesis(
         predicted=predicted,
         p=p,
         supported=p <= alpha,
-        trend=page_trend(rows),
+        trend=trend,
         against_first=against_reference(
             table, levels, levels[0], alternative=alternative, alpha=alpha
         ),

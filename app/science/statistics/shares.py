@@ -2,7 +2,7 @@
 
 Each component of embodiment has its own range (ownership -15 to 15, agency -12 to 12, location -9
 to 9): as shares of their maxima components can be compared. For contact times, the shares are those
-of finger, hand and arm in the time of contact.
+of finger, hand and arm in the time of contact. A share of independent trials has an exact interval.
 """
 
 from collections.abc import Mapping
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import betaincinv
 
 from app.science.statistics.arrays import FloatArray
 from app.science.statistics.errors import StatisticsError
@@ -87,3 +88,27 @@ def contact_shares(
     shares = np.full_like(sums, np.nan)
     np.divide(sums, total[:, np.newaxis], out=shares, where=total[:, np.newaxis] > 0.0)
     return ContactShares(groups, shares, total, int((total <= 0.0).sum()))
+
+
+def clopper_pearson(
+    successes: int, trials: int, *, confidence: float = 0.95
+) -> tuple[float, float]:
+    """Return the Clopper-Pearson interval of a probability, 0 to 1.
+
+    It covers the probability at least as often as it says, whatever the probability is: its ends
+    are quantiles of the beta distributions with (x, m - x + 1) and (x + 1, m - x).
+    Clopper and Pearson 1934, Biometrika 26:404-413.
+
+    Raises:
+        StatisticsError: no trials, or successes outside 0 to `trials`, or a confidence outside
+            0 to 1.
+    """
+    if trials < 1 or not 0 <= successes <= trials:
+        raise StatisticsError(f"{successes} of {trials} is no proportion.")
+    if not 0.0 < confidence < 1.0:
+        raise StatisticsError(f"The confidence is {confidence}; give a number between 0 and 1.")
+    tail = (1.0 - confidence) / 2.0
+    failures = trials - successes
+    low = float(betaincinv(successes, failures + 1, tail)) if successes else 0.0
+    high = float(betaincinv(successes + 1, failures, 1.0 - tail)) if failures else 1.0
+    return low, high

@@ -102,12 +102,16 @@ def examine(
 def _invalid_values(
     times_s: NDArray[np.float64], rotations: Floats, positions_m: Floats, limits: QualityLimits
 ) -> tuple[Bools, Bools]:
-    """Return which frames have a non-finite value and which a non-unit quaternion, each (n,)."""
+    """Return which frames have a non-finite value and which a non-unit quaternion, each (n,).
+
+    A position that no room has counts as no number.
+    """
     with np.errstate(invalid="ignore", over="ignore"):
         wide = rotations.astype(np.float64)
         length = np.sqrt(np.einsum("njk,njk->nj", wide, wide))
         unit = (np.abs(length - 1.0) <= limits.unit_tolerance).all(axis=1)
-    finite = np.isfinite(times_s) & np.isfinite(positions_m).all(axis=1)
+    # NaN compares false, and infinity is beyond any room.
+    finite = np.isfinite(times_s) & (np.abs(positions_m) <= limits.farthest_m).all(axis=1)
     # A quaternion of unit length contains finite numbers only.
     finite &= unit | np.isfinite(rotations).all(axis=(1, 2))
     return ~finite, finite & ~unit

@@ -30,6 +30,7 @@ class QualityLimits:
     `may_rest` joints rest on the floor with the foot they belong to and are exempt.
 
     Rotation: a quaternion whose length deviates from 1 by more than `unit_tolerance` is invalid.
+    Position: hips more than `farthest_m` along an axis from the origin are in no room: invalid.
     Time: a value further from zero than `latest_s`, thirty years, is not a clock reading and is
     ignored.
     """
@@ -45,6 +46,7 @@ class QualityLimits:
     known_s: float = 2.0
     may_rest: tuple[int, ...] = TOES
     unit_tolerance: float = 1e-3
+    farthest_m: float = 1000.0
     latest_s: float = 1e9
 
 

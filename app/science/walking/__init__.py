@@ -12,7 +12,8 @@ Each folder has its own public interface. From the bottom:
     planning     Lazy Theta*
     following    the agent that is steered by velocity, acceleration, angular; metrics
     maps         suitability maps of a database, and the interpolation between them
-    models       distributions fitted to the maps, and predictions from them
+    travel_times curves of travel time over path length, with effects of people
+    models       distributions fitted to the maps and to travel times, and predictions from them
     synthetic    synthetic populations for tests and demonstrations
     evaluation   comparison of predictions with walks that a model was not fitted on
 

@@ -108,8 +108,9 @@ function draw(
 const CONFIG = {
   displaylogo: false,
   responsive: false,
-  // Pictures are saved with our own buttons, which add the caption and the watermark.
-  modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "toImage"],
+  // The toolbar would cover titles. Dragging zooms in, a double click shows everything again, and
+  // pictures are saved with our own buttons, which add the caption and the watermark.
+  displayModeBar: false,
 } as const;
 
 function paletteOf(element: HTMLElement, scheme: "light" | "dark"): Palette {

@@ -9,7 +9,7 @@ import type { Account } from "@shared/api/types";
 import { Activity, type JSX, Suspense, useEffect } from "react";
 import { Router } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
-import { useAccount, useExpiredAccount, useExpiryDetection } from "./account";
+import { useAccount, useExpiredAccount, useExpiryDetection, useSignInChecks } from "./account";
 import { Failure } from "./errors";
 import { Header } from "./Header";
 import { useHelpKey } from "./help/useHelpKey";
@@ -66,6 +66,7 @@ function useOpenDialogsHidden(hidden: boolean): void {
 function Shell({ account }: { readonly account: Account }): JSX.Element {
   const { t } = useTexts();
   useExpiryDetection();
+  useSignInChecks();
   useHelpKey();
   return (
     <Router hook={useHashLocation}>

@@ -5,7 +5,7 @@ import type { Account } from "@shared/api/types";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { Mark } from "@shared/ui/Mark";
 import type { JSX } from "react";
-import { Link } from "wouter";
+import { Link, useLocation } from "wouter";
 import { DownloadsButton } from "./downloads/DownloadsButton";
 import { type Key, useTexts } from "./i18n";
 import { AccountMenu } from "./pages/account/AccountMenu";
@@ -45,6 +45,7 @@ const PLACES: readonly Place[] = [
   { href: "/instruments", icon: "form", name: "instruments.title" },
   { href: "/captures", icon: "walk", name: "captures.title" },
   { href: "/bodies", icon: "body", name: "bodies.title" },
+  { href: "/avatars", icon: "joint", name: "avatars.title" },
   { href: "/walking", icon: "foot", name: "walking.title" },
   { href: "/equipment", icon: "headset", name: "equipment.title" },
   { href: "/network", icon: "link", name: "network.title", permission: "network" },
@@ -54,6 +55,8 @@ const PLACES: readonly Place[] = [
 
 function Places({ role }: { readonly role: Role }): JSX.Element {
   const { t } = useTexts();
+  const [address] = useLocation();
+  const isHere = ({ href }: Place) => address === href || address.startsWith(`${href}/`);
   return (
     <>
       {PLACES.filter(({ permission }) => permission === undefined || may(role, permission)).map(
@@ -62,9 +65,10 @@ function Places({ role }: { readonly role: Role }): JSX.Element {
             key={place.href}
             component={Link}
             href={place.href}
-            variant="subtle"
-            color="gray"
-            fw={450}
+            aria-current={isHere(place) ? "page" : undefined}
+            variant={isHere(place) ? "light" : "subtle"}
+            {...(isHere(place) ? {} : { color: "gray" })}
+            fw={isHere(place) ? 560 : 450}
             size="compact-sm"
             leftSection={<Icon name={place.icon} size={16} />}
           >

@@ -12,6 +12,7 @@ import { NetworkPage } from "./pages/network/NetworkPage";
 import { PeoplePage } from "./pages/people/PeoplePage";
 import { StudiesPage } from "./pages/Studies";
 import { StudyPage } from "./pages/study/StudyPage";
+import { TrackersPage } from "./pages/trackers/TrackersPage";
 import classes from "./Shell.module.css";
 
 // Loaded lazily, so that opening the console for a session does not wait for these.
@@ -29,6 +30,12 @@ const BodiesPage = lazy(async () => ({
 }));
 const BodyPage = lazy(async () => ({
   default: (await import("./bodies/BodyPage")).BodyPage,
+}));
+const AvatarsPage = lazy(async () => ({
+  default: (await import("./avatarEditor/AvatarsPage")).AvatarsPage,
+}));
+const AvatarPage = lazy(async () => ({
+  default: (await import("./avatarEditor/AvatarPage")).AvatarPage,
 }));
 const WalkingPage = lazy(async () => ({
   default: (await import("./walking/WalkingPage")).WalkingPage,
@@ -83,6 +90,11 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
           <EquipmentPage />
         </div>
       </Route>
+      <Route path="/trackers">
+        <div className={classes.main}>
+          <TrackersPage />
+        </div>
+      </Route>
       <Route path="/captures">
         <div className={classes.main}>
           <CapturesPage />
@@ -105,6 +117,16 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
           <div className={classes.main}>
             <BodyPage key={hash} hash={hash} />
           </div>
+        )}
+      </Route>
+      <Route path="/avatars">
+        <div className={classes.main}>
+          <AvatarsPage />
+        </div>
+      </Route>
+      <Route path="/avatars/:key/:version?">
+        {({ key, version }) => (
+          <AvatarPage key={`${key} ${version}`} avatarKey={key} version={version} />
         )}
       </Route>
       <Route path="/walking/models/:id">

@@ -13,7 +13,11 @@ const EXPIRED = ["account", "ended"] as const;
 export function useAccount() {
   return useQuery<Account | null>({
     queryKey: KEY,
-    queryFn: async () => (await accounts.me()).account,
+    queryFn: async ({ client }) => {
+      const { account } = await accounts.me();
+      if (account === null) keepExpired(client);
+      return account;
+    },
     staleTime: 60_000,
   });
 }
@@ -94,10 +98,34 @@ export function useExpiryDetection(): void {
   }, [queries]);
 }
 
+/** How often an open page checks whether somebody has ended its sign-in, ms. */
+const CHECK_EVERY_MS = 10_000;
+
+/** Check again and again that the sign-in still exists: most pages have no live feed that ends. */
+export function useSignInChecks(): void {
+  const queries = useQueryClient();
+  useEffect(() => {
+    const check = () => {
+      if (!document.hidden) void checkSignIn(queries);
+    };
+    const checks = window.setInterval(check, CHECK_EVERY_MS);
+    document.addEventListener("visibilitychange", check);
+    return () => {
+      window.clearInterval(checks);
+      document.removeEventListener("visibilitychange", check);
+    };
+  }, [queries]);
+}
+
 function expire(queries: QueryClient): void {
+  keepExpired(queries);
+  queries.setQueryData(KEY, null);
+}
+
+/** Remember whose page is kept until they sign in again. */
+function keepExpired(queries: QueryClient): void {
   const account = queries.getQueryData<Account | null>(KEY);
   if (account != null) queries.setQueryData(EXPIRED, account);
-  queries.setQueryData(KEY, null);
 }
 
 /** The name of an actor: `account:admin` is admin. */

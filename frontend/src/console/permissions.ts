@@ -68,6 +68,8 @@ export const RULES = {
       "PATCH /api/humanoids/{content_hash}",
       "POST /api/humanoids/{content_hash}/measure",
       "POST /api/avatars",
+      "POST /api/avatars/edit",
+      "POST /api/avatars/check",
       "POST /api/avatars/{key}/versions",
     ],
   },
@@ -85,6 +87,8 @@ export const RULES = {
       "DELETE /api/walking/models/{model_id}",
     ],
   },
+  openDoor: { roles: DESIGNERS, routes: ["PUT /api/trackers/doors/{door}"] },
+  wearTracker: { roles: RUNNERS, routes: ["PUT /api/trackers/limbs"] },
   network: { roles: RUNNERS, routes: ["GET /api/network"] },
   compare: {
     roles: READERS,

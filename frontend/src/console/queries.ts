@@ -5,8 +5,9 @@ import { network, sessions, studies } from "@shared/api/endpoints";
 import { exports, storageRoom, tryouts } from "@shared/api/housekeeping";
 import { type ImportMapping, imports } from "@shared/api/imports";
 import { type AuditFilter, audit, invitations, people } from "@shared/api/people";
-import { calibrations, consents, suggestions } from "@shared/api/records";
+import { calibrations, consents, selfTests, suggestions } from "@shared/api/records";
 import { rights } from "@shared/api/rights";
+import { trackers } from "@shared/api/trackers";
 import type { DataKind, Kind } from "@shared/api/types";
 import { infiniteQueryOptions, keepPreviousData, queryOptions } from "@tanstack/react-query";
 
@@ -92,6 +93,14 @@ export const eventsQuery = (id: string, version: number) =>
     queryFn: () => sessions.events(id),
   });
 
+/** Counted anew whenever it is opened: what a headset has yet to send changes no version. */
+export const receiptQuery = (id: string, version: number) =>
+  queryOptions({
+    queryKey: ["sessions", id, "receipt", version],
+    queryFn: () => sessions.receipt(id),
+    staleTime: 0,
+  });
+
 /** `state` changes whenever an alarm starts or ends. */
 export const alarmsQuery = (id: string, state: string) =>
   queryOptions({
@@ -119,6 +128,18 @@ export const suggestionsQuery = (key: string) =>
 export const calibrationsQuery = queryOptions({
   queryKey: ["calibrations"],
   queryFn: calibrations.list,
+});
+
+export const selfTestsQuery = queryOptions({
+  queryKey: ["headset-tests"],
+  queryFn: selfTests.list,
+});
+
+/** Asked again every second while the page is shown: what arrives is watched as it happens. */
+export const trackersQuery = queryOptions({
+  queryKey: ["trackers"],
+  queryFn: trackers.get,
+  refetchInterval: 1000,
 });
 
 export const peopleQuery = queryOptions({ queryKey: ["people"], queryFn: people.list });

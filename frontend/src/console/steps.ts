@@ -62,6 +62,7 @@ export function usePhaseName(): (session: SessionView, phase: PhaseSummary) => s
       block === null ? null : t("replay.phase.block", { number: block }),
       t(stepName(phase)),
       phase.latency_ms === null ? null : latency(milliseconds(phase.latency_ms)),
+      phase.body,
       phase.attempt > 1 ? t("timeline.attempt", { number: phase.attempt }) : null,
       phase.status === "voided" ? t("replay.phase.void") : null,
       isOver(phase) ? null : t("replay.phase.running"),

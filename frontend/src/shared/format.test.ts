@@ -1,5 +1,14 @@
 import { describe, expect, it } from "vitest";
-import { ago, clockFace, duration, latencyDifference, latencyWithin, number } from "./format";
+import {
+  ago,
+  clockFace,
+  decimals,
+  duration,
+  latencyDifference,
+  latencyWithin,
+  measuredTime,
+  number,
+} from "./format";
 import { milliseconds, seconds } from "./units";
 
 describe("formatting", () => {
@@ -19,9 +28,32 @@ describe("formatting", () => {
     ]);
   });
 
+  it("writes a measured time in the unit that suits it", () => {
+    const written = [0, 0.0445, 0.99994, 0.99996, 1.25, 59.994, 59.996, 75].map((time) =>
+      measuredTime(seconds(time), "en"),
+    );
+    expect(written).toEqual([
+      "0.0 ms",
+      "44.5 ms",
+      "999.9 ms",
+      "1.00 s",
+      "1.25 s",
+      "59.99 s",
+      "1 min",
+      "1 min 15 s",
+    ]);
+    expect(measuredTime(seconds(0.05), "en", number)).toBe("50 ms");
+    expect(measuredTime(seconds(12.5), "de")).toBe("12,50 s");
+  });
+
   it("uses the notation of the language", () => {
     expect(number(1.0407, "en")).toBe("1.04");
     expect(number(1.0407, "de")).toBe("1,04");
+  });
+
+  it("gives every value the same decimals, and no sign to what rounds to zero", () => {
+    const written = [-0.25, -0.0004, 0, 8].map((value) => decimals(value, "en", 3));
+    expect(written).toEqual(["−0.250", "0.000", "0.000", "8.000"]);
   });
 
   it("writes a measured latency with its uncertainty, which is never rounded down", () => {

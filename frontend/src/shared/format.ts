@@ -23,6 +23,20 @@ export function duration(time: Seconds): string {
     : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
+/**
+ * `12.5 ms`, `1.25 s`, `2 min 5 s`: a measured time in the unit that suits it. `digits` writes the
+ * number, such as `number` for limits, which have no more decimals than they need.
+ */
+export function measuredTime(
+  time: Seconds,
+  language: string,
+  digits: typeof decimals = decimals,
+): string {
+  // What would be rounded up to a second is one.
+  if (Math.abs(time) < 0.99995) return `${digits(time * 1000, language, 1)} ms`;
+  return Math.abs(time) < 59.995 ? `${digits(time, language, 2)} s` : duration(time);
+}
+
 /** `125 ms`. */
 export const latency = (value: Milliseconds): string => `${value} ms`;
 
@@ -67,7 +81,9 @@ export function number(value: number, language: string, digits = 2): string {
 /** `8.00`, `−0.25`: the same number of decimals for every value, so that they can be compared. */
 export function decimals(value: number, language: string, count: number): string {
   const digits = { minimumFractionDigits: count, maximumFractionDigits: count };
-  return new Intl.NumberFormat(locale(language), digits).format(value).replace("-", "−");
+  // What rounds to zero has no sign: "−0.000" would look like a finding.
+  const format = new Intl.NumberFormat(locale(language), { ...digits, signDisplay: "negative" });
+  return format.format(value).replace("-", "−");
 }
 
 /** Date and time of day in the reader's own time zone, from UTC ISO 8601. */

@@ -84,6 +84,30 @@ export function rotationBetween(current: Quaternion, goal: Quaternion): Vector {
   return [factor * dx, factor * dy, factor * dz];
 }
 
+/** `rotationBetween` the quaternion at `at` in `values` and `goal`, written into an array. */
+export function writeRotationBetween(
+  values: Float64Array,
+  at: number,
+  [aw, ax, ay, az]: Quaternion,
+  into: Float64Array,
+  start: number,
+): void {
+  const bw = values[at] as number;
+  const bx = -(values[at + 1] as number);
+  const by = -(values[at + 2] as number);
+  const bz = -(values[at + 3] as number);
+  const dw = aw * bw - ax * bx - ay * by - az * bz;
+  const dx = aw * bx + ax * bw + ay * bz - az * by;
+  const dy = aw * by - ax * bz + ay * bw + az * bx;
+  const dz = aw * bz + ax * by - ay * bx + az * bw;
+  const sign = dw < 0 ? -1 : 1;
+  const sine = Math.sqrt(dx * dx + dy * dy + dz * dz);
+  const factor = sign * (sine > TINY ? (2 * Math.atan2(sine, sign * dw)) / sine : 2);
+  into[start] = factor * dx;
+  into[start + 1] = factor * dy;
+  into[start + 2] = factor * dz;
+}
+
 /** `current` rotated by a rotation vector in the world. */
 export function rotated(current: Quaternion, by: Vector): Quaternion {
   const [x, y, z] = by;

@@ -219,3 +219,27 @@ def test_a_published_model_names_its_author_and_licence() -> None:
     assert (found.licence, found.wearers, found.credit_needed) == ("CC_BY", "everyone", True)
     assert len(read.contents.textures) == 5
     assert all(texture.width > 0 for texture in read.contents.textures)
+
+
+def test_of_two_statements_of_a_file_the_stricter_one_counts() -> None:
+    """A file with the extensions of both VRM versions is as restricted as the stricter one says."""
+    everyone = {"avatarPermission": "everyone", "commercialUsage": "corporation"}
+
+    def both(document: Json) -> None:
+        document["extensions"]["VRMC_vrm"]["meta"] = everyone
+        document["extensions"]["VRM"] = {
+            "meta": {"allowedUserName": "OnlyAuthor", "commercialUssageName": "Disallow"}
+        }
+
+    found = read_humanoid(humanoid_file(Model(vrm=1, edit=both))).rights
+    assert (found.wearers, found.commercial) == ("author", "forbidden")
+    assert rights(everyone, vrm=1).wearers == "everyone"
+
+
+def test_authors_and_addresses_are_bounded() -> None:
+    """Of endless authors a few are listed and the others counted; only web addresses stay."""
+    meta = {"authors": ["a" * 10_000] * 500, "licenseUrl": "javascript:alert(1)"}
+    found = rights({**meta, "otherLicenseUrl": "https://example.org/terms"}, vrm=1)
+    assert sum(map(len, found.authors)) < 1_100
+    assert found.authors[-1] == "and 499 more"
+    assert (found.licence_url, found.other_url) == ("", "https://example.org/terms")

@@ -11,7 +11,7 @@ import pytest
 from app.adapters.humanoids import read_humanoid, read_skin
 from app.adapters.humanoids.writer import write_mannequin
 from app.cli.figure.run import POPULATIONS
-from app.cli.figure.shipped import STATURE_M, measures_of
+from app.cli.figure.shipped import STATURE_M, measures_of, tuned_standard
 from app.features.movement.humanoids.shipped import SHIPPED_BODIES
 from app.protocol.avatar import parse_avatar_json
 from app.resources import bodies_dir
@@ -142,3 +142,16 @@ def test_the_standard_avatar_wears_the_neutral_body() -> None:
     built = avatar_model(configuration, 1.62, figure=figure)
     assert built.fallback_parts == ()
     assert built.mjcf.count("<mesh ") == len(PART_NAMES)
+
+
+def test_a_tuning_that_knows_no_inertia_confirms_the_shipped_gains() -> None:
+    """Trunk, head and left arm are tuned to within 10 % of the shipped kp, and 5 % of kd."""
+    held = ("left_leg", "right_leg", "right_arm", "left_fingers", "right_fingers")
+    shipped_gains = parse_avatar_json((bodies_dir() / "standard.json").read_text(encoding="utf-8"))
+    found = parse_avatar_json(tuned_standard(bodies_dir(), held))
+    tuned = [name for name in found.axes if name not in found.locked_axes]
+    assert len(tuned) == 23
+    for name in tuned:
+        own, was = found.axes[name], shipped_gains.axes[name]
+        assert own.kp == pytest.approx(was.kp, rel=0.10), name
+        assert own.kd == pytest.approx(was.kd, rel=0.05), name

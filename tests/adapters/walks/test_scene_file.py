@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from app.adapters.walks.scene_file import load_scene, load_shipped, shipped_scenes
 from app.protocol.errors import ConfigError
 from app.protocol.source import read_source
+from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.scene import area_m2
 
 SCENE = """
@@ -139,3 +140,16 @@ def test_shipped_scenes_say_what_they_assume(key: str) -> None:
     assert scene.name == key
     assert "From the paper:" in scene.about
     assert "Assumed, since the paper does not say:" in scene.about
+
+
+def test_the_first_workplace_says_nothing_about_curvature() -> None:
+    """All paths of the paper's first scene are straight lines of two points; the second's turn."""
+    points = []
+    for key in ("car-and-three-racks", "car-between-two-racks"):
+        scene = load_shipped(key)
+        planner = LazyThetaPlanner(scene)
+        paths = [planner.plan(scene.places[one.start], scene.places[one.goal])
+                 for one in scene.paths]  # fmt: skip
+        points.append([len(path.points_m) for path in paths])
+    assert set(points[0]) == {2}
+    assert min(points[1]) > 2

@@ -4,11 +4,8 @@ from functools import cache
 from pathlib import Path
 
 from app.rehearsal.body import captured_movement, skeleton_motion
-from app.science.retargeting.joint_map import propose_joint_map
-from app.science.retargeting.pipeline import retarget_motion
-from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, reference_avatar
+from app.science.retargeting import movement_travelling, propose_joint_map
 from app.science.skeleton import Movement, build_skeleton, resample
-from app.science.skeleton.movement import continuous
 
 RATE_HZ = 90.0
 STATURE_M = 1.75
@@ -29,10 +26,7 @@ def movement_of(path: Path, *, travels: bool) -> Movement:
         return resample(captured_movement(path, build_skeleton(STATURE_M)), RATE_HZ)
     source = skeleton_motion(path)
     joint_map = propose_joint_map(source.rig).joint_map
-    avatar = reference_avatar(STATURE_M)
-    moved = retarget_motion(source, joint_map, avatar, REFERENCE_JOINT_MAP).motion
-    rotations = continuous(moved.rotations)
-    return resample(Movement(source.rate_hz, moved.root_positions_m, rotations), RATE_HZ)
+    return resample(movement_travelling(source, joint_map, build_skeleton(STATURE_M)), RATE_HZ)
 
 
 def captured(shared_data: Path, name: str) -> Movement:

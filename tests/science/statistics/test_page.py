@@ -22,6 +22,9 @@ def test_with_ties_p_is_that_of_every_arrangement() -> None:
     ]
     expected = float(np.mean(np.array(sums) >= test.statistic - 1e-9))
     assert test.p_given_ties == pytest.approx(expected, abs=1e-12)
+    falling = float(np.mean(np.array(sums) <= test.statistic + 1e-9))
+    assert test.p_falling_given_ties == pytest.approx(falling, abs=1e-12)
+    assert (test.p_rises, test.p_falls) == (test.p_given_ties, test.p_falling_given_ties)
 
 
 @pytest.mark.parametrize(("n", "k"), [(5, 3), (12, 3), (4, 4), (3, 5)])

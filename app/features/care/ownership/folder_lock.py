@@ -107,9 +107,14 @@ class FolderLock:
                 _lock(handle)
             except OSError as error:
                 os.close(handle)
-                if error.errno in _HELD:
-                    raise Owned(f"the data folder {self.folder}", self._holder()) from None
-                raise
+                if error.errno not in _HELD:
+                    raise
+                holder = self._holder()
+                if holder is None and not self._file.exists():
+                    # Its owner has just released it, and removed the file and perhaps the folder.
+                    self.folder.mkdir(parents=True, exist_ok=True)
+                    continue
+                raise Owned(f"the data folder {self.folder}", holder) from None
             if _is_at(handle, self._file):
                 return handle
             # The file was replaced in the meantime.

@@ -25,28 +25,29 @@ def copies_of_study(db: Session, study_id: str) -> list[CopyMade]:
 
 
 def copies_by_participant(
-    db: Session, study: Study, people: Sequence[Participant], began: Mapping[str, datetime]
+    db: Session, study: Study, kinds: Mapping[str, str], began: Mapping[str, datetime]
 ) -> dict[str, list[CopyMade]]:
     """Return the copies that may contain each of a study's participants.
 
-    `began` maps each participant to the start of their first session. The result is that of
+    `kinds` maps the id of each participant to their kind, and `began` to the start of their first
+    session. The result is that of
     `copies_holding` for each of them, from one query.
     """
     of_study = (CopyMade.study_id == study.id) | (CopyMade.kind == "backup")
     query = select(CopyMade).where(CopyMade.destroyed_at.is_(None), of_study)
     copies = db.scalars(query.order_by(CopyMade.at)).all()
     return {
-        one.id: [copy for copy in copies if copy.at >= began[one.id] and _holds(copy, one)]
-        for one in people
-        if one.id in began
+        id_: [copy for copy in copies if copy.at >= began[id_] and _holds(copy, id_, kind)]
+        for id_, kind in kinds.items()
+        if id_ in began
     }
 
 
-def _holds(copy: CopyMade, participant: Participant) -> bool:
+def _holds(copy: CopyMade, participant_id: str, kind: str) -> bool:
     """Apply the rule of `_may_hold` to a copy of the participant's study, or to a backup."""
     if copy.kind == "export":
-        return copy.session_kind in (participant.kind, "all")
-    return copy.kind == "backup" or copy.participant_id == participant.id
+        return copy.session_kind in (kind, "all")
+    return copy.kind == "backup" or copy.participant_id == participant_id
 
 
 def copies_holding(db: Session, participant: Participant) -> list[CopyMade]:

@@ -2,10 +2,11 @@
 
 import json
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from typing import Literal, cast
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any, Literal, cast
 
-from sqlalchemy import select
+from sqlalchemy import Row, select
 from sqlalchemy.orm import Session
 
 from app.features.care.rights.copies import copies_by_participant
@@ -25,13 +26,13 @@ CopyKind = Literal["export", "access", "backup"]
 
 def participants_of(db: Session, settings: Settings, study: Study) -> list[ParticipantView]:
     """Return every participant of a study, newest first, including erased ones."""
-    rows = db.scalars(
-        select(Participant)
+    # Only the columns shown: loading a thousand complete rows would take most of the time.
+    rows = db.execute(
+        select(Participant.id, Participant.code, Participant.kind, Participant.created_at)
         .where(Participant.study_id == study.id)
         .order_by(Participant.created_at.desc(), Participant.code.desc())
     ).all()
     sessions: dict[str, list[ParticipantSession]] = defaultdict(list)
-    # Only the columns shown: loading a thousand complete sessions would take most of the time.
     own = select(
         StudySession.participant_id,
         StudySession.id,
@@ -40,33 +41,36 @@ def participants_of(db: Session, settings: Settings, study: Study) -> list[Parti
         StudySession.started_at,
         StudySession.ended_at,
     ).where(StudySession.study_id == study.id)
-    for participant_id, *shown in db.execute(own.order_by(StudySession.created_at)):
-        fields = zip(ParticipantSession.model_fields, shown, strict=True)
-        sessions[participant_id].append(ParticipantSession.model_validate(dict(fields)))
-    erased = {
-        row.participant_id: row
-        for row in db.scalars(select(Erasure).where(Erasure.study_id == study.id))
-    }
+    for row in db.execute(own.order_by(StudySession.created_at)):
+        participant_id, id_, status, created_at, started_at, ended_at = row
+        one = ParticipantSession(
+            id=id_,
+            status=status,
+            created_at=created_at,
+            started_at=started_at,
+            ended_at=ended_at,
+        )
+        sessions[participant_id].append(one)
+    erasures = db.scalars(select(Erasure).where(Erasure.study_id == study.id)).all()
+    tombs = {erased.participant_id: erasure_view(db, settings, erased) for erased in erasures}
     began = {person: own[0].created_at for person, own in sessions.items()}
-    copies = copies_by_participant(db, study, rows, began)
+    copies = copies_by_participant(db, study, {row.id: row.kind for row in rows}, began)
+    views = {one: _left(one) for one in {copy for held in copies.values() for copy in held}}
     return [
         _participant(
-            row, sessions[row.id], copies.get(row.id, []), _tomb(db, settings, erased, row)
+            row,
+            sessions.get(row.id, []),
+            [views[one] for one in copies.get(row.id, ())],
+            tombs.get(row.id),
         )
         for row in rows
     ]
 
 
-def _tomb(
-    db: Session, settings: Settings, erased: Mapping[str, Erasure], row: Participant
-) -> ErasureView | None:
-    return erasure_view(db, settings, erased[row.id]) if row.id in erased else None
-
-
 def _participant(
-    row: Participant,
-    sessions: Sequence[ParticipantSession],
-    copies: Sequence[CopyMade],
+    row: Row[str, str, Any, datetime],
+    sessions: list[ParticipantSession],
+    copies: list[CopyLeft],
     erasure: ErasureView | None,
 ) -> ParticipantView:
     return ParticipantView(
@@ -74,8 +78,8 @@ def _participant(
         code=row.code,
         kind=row.kind,
         created_at=row.created_at,
-        sessions=list(sessions),
-        copies=[] if erasure is not None else [_left(one) for one in copies],
+        sessions=sessions,
+        copies=[] if erasure is not None else copies,
         erasure=erasure,
     )
 

@@ -4,10 +4,17 @@ A version is identified by the hash of its content and never changes.
 """
 
 from app.features.design.instruments.service import (
+    faulty_instruments,
     instrument_of,
     newest_instruments,
     parsed_instruments,
     save_instrument,
 )
 
-__all__ = ["instrument_of", "newest_instruments", "parsed_instruments", "save_instrument"]
+__all__ = [
+    "faulty_instruments",
+    "instrument_of",
+    "newest_instruments",
+    "parsed_instruments",
+    "save_instrument",
+]

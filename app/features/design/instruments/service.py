@@ -1,5 +1,6 @@
 """Store instrument files as content-hashed versions, which never change."""
 
+import re
 from datetime import datetime
 from functools import lru_cache
 
@@ -8,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import NotFound
 from app.models import InstrumentVersion, Study, StudyVersion
-from app.platform.config_problems import invalid_config, unpacking
+from app.platform.config_problems import StoredFault, invalid_config, stored_fault, unpacking
 from app.protocol import ConfigError, LoadedInstrument, load_instrument, parse_instrument_json
 from app.science.instruments import Instrument
 
@@ -22,6 +23,28 @@ def instrument_of(version: InstrumentVersion) -> Instrument:
 def _parse_instrument(content_hash: str, canonical_json: str) -> Instrument:
     with unpacking(canonical_json, content_hash):
         return parse_instrument_json(canonical_json)
+
+
+def faulty_instruments(db: Session) -> tuple[int, list[StoredFault]]:
+    """Return how many versions of instruments are stored, and what is wrong with some of them."""
+    query = select(InstrumentVersion).order_by(InstrumentVersion.key, InstrumentVersion.created_at)
+    rows = list(db.scalars(query))
+    found = (
+        stored_fault(
+            row.key,
+            _number_in(row.canonical_json),
+            (row.canonical_json, row.content_hash),
+            parse_instrument_json,
+        )
+        for row in rows
+    )
+    return len(rows), [one for one in found if one is not None]
+
+
+def _number_in(canonical_json: str) -> int | None:
+    """Return the version that a content says it is, even if it was damaged; None if it cannot."""
+    found = re.findall(r'"version":(\d{1,9})', canonical_json)
+    return int(found[-1]) if found else None
 
 
 def newest_instruments(db: Session) -> dict[str, InstrumentVersion]:

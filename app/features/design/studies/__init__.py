@@ -7,6 +7,7 @@ stored version is parsed once and cached.
 from app.features.design.studies.service import (
     add_shipped,
     add_version,
+    faulty_studies,
     freeze,
     instrument_for,
     newest_version,
@@ -22,6 +23,7 @@ __all__ = [
     "UsedInstrument",
     "add_shipped",
     "add_version",
+    "faulty_studies",
     "freeze",
     "instrument_for",
     "newest_version",

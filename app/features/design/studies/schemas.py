@@ -3,8 +3,9 @@
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from app.plain_titles import plain
 from app.platform.config_problems import ProblemView
 from app.protocol import AvatarChanges, StepKind
 
@@ -248,7 +249,11 @@ class DuplicateRequest(BaseModel):
 
     key: str = Field(min_length=1, max_length=80)
     title: (
-        dict[Annotated[str, Field(max_length=8)], Annotated[str, Field(max_length=200)]] | None
+        dict[
+            Annotated[str, Field(max_length=8)],
+            Annotated[str, Field(max_length=200), AfterValidator(plain)],
+        ]
+        | None
     ) = Field(default=None, max_length=20)
 
 

@@ -13,7 +13,7 @@ from app.features.design.instruments import newest_instruments, parsed_instrumen
 from app.features.movement.avatar import configurations, newest_numbers
 from app.features.movement.humanoids import named_bodies
 from app.models import InstrumentVersion, Study, StudySession, StudyVersion
-from app.platform.config_problems import invalid_config, unpacking
+from app.platform.config_problems import StoredFault, invalid_config, stored_fault, unpacking
 from app.protocol import ConfigError, LoadedStudy, StudyProtocol, load_study, parse_study_json
 from app.resources import study_configs_dir
 
@@ -43,6 +43,17 @@ def protocol_of(version: StudyVersion) -> StudyProtocol:
 def _parse_study(content_hash: str, canonical_json: str) -> StudyProtocol:
     with unpacking(canonical_json, content_hash):
         return parse_study_json(canonical_json)
+
+
+def faulty_studies(db: Session) -> tuple[int, list[StoredFault]]:
+    """Return how many versions of studies are stored, and what is wrong with some of them."""
+    query = select(Study.key, StudyVersion).join(Study, Study.id == StudyVersion.study_id)
+    rows = list(db.execute(query.order_by(Study.key, StudyVersion.number)))
+    found = (
+        stored_fault(key, row.number, (row.canonical_json, row.content_hash), parse_study_json)
+        for key, row in rows
+    )
+    return len(rows), [one for one in found if one is not None]
 
 
 def instrument_for(db: Session, version: StudyVersion, key: str) -> InstrumentVersion:

@@ -4,13 +4,19 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Query, Response
 
+from app.features.movement.avatar.difference import version_difference
+from app.features.movement.avatar.editing import edit
 from app.features.movement.avatar.schemas import (
     MAX_VERSION,
     AvatarCheck,
+    AvatarEdit,
+    AvatarEdited,
     AvatarSummary,
     AvatarText,
     AvatarVersionDetail,
+    AvatarVersionDifference,
     AvatarView,
+    ModelToTry,
     NewAvatar,
     NewAvatarVersion,
 )
@@ -26,6 +32,7 @@ from app.features.movement.avatar.views import (
     avatar_view,
     check_text,
     model_of,
+    model_to_try,
     version_detail,
 )
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
@@ -54,6 +61,29 @@ def post_avatar_check(file: AvatarText, db: Reading, _: SignedIn) -> AvatarCheck
     return check_text(db, file.text)
 
 
+@router.post("/edit")
+def post_avatar_edit(request: AvatarEdit, db: Reading, _: SignedIn) -> AvatarEdited:
+    """Apply operations to a configuration without storing it: what changes, and what is lost."""
+    return edit(db, request)
+
+
+@router.post(
+    "/model",
+    response_class=Response,
+    responses={
+        200: {
+            "content": {MEDIA_TYPE: {"schema": {"type": "string"}}},
+            "description": "The model as MJCF; its ETag is the SHA-256 of its bytes.",
+        }
+    },
+)
+def post_avatar_model(request: ModelToTry, db: Reading, _: SignedIn) -> Response:
+    """Return a configuration that need not be stored as a MuJoCo model; nothing is stored."""
+    model = model_to_try(db, request)
+    headers = {"etag": f'"{model.content_hash}"', "cache-control": "no-store"}
+    return Response(model.mjcf, media_type=MEDIA_TYPE, headers=headers)
+
+
 @router.get("/{key}")
 def get_avatar(key: str, db: Reading, caller: SignedIn) -> AvatarView:
     """Return one avatar with all its versions, the newest one in full."""
@@ -75,6 +105,14 @@ def get_avatar_version(
 ) -> AvatarVersionDetail:
     """Return one version of an avatar configuration in full."""
     return version_detail(db, caller, key, number)
+
+
+@router.get("/{key}/versions/{number}/difference/{other}")
+def get_avatar_difference(
+    key: str, number: Number, other: Number, db: Reading, _: SignedIn
+) -> AvatarVersionDifference:
+    """Return what changed from version `number` to version `other`: by value and by body group."""
+    return version_difference(db, key, number, other)
 
 
 @router.get(

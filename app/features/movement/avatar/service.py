@@ -4,7 +4,7 @@ Like captures, they belong to the lab, not to a study. A session refers to the c
 used by its hash, so it can be looked up however the avatar is tuned later.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from datetime import datetime
 from functools import lru_cache
 from typing import Any
@@ -12,7 +12,7 @@ from typing import Any
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.errors import Conflict, InvalidConfig, NotFound, StaleVersion
+from app.errors import Conflict, InvalidConfig, InvalidInput, NotFound, StaleVersion
 from app.features.movement.avatar.schemas import NewAvatar, NewAvatarVersion, Origin
 from app.features.movement.humanoids import (
     asked_terms,
@@ -22,7 +22,8 @@ from app.features.movement.humanoids import (
 )
 from app.features.people.audit import record
 from app.models import Avatar, AvatarVersion
-from app.platform.config_problems import unpacking
+from app.plain_titles import NO_NAMES
+from app.platform.config_problems import StoredFault, require_sound, stored_fault
 from app.protocol.avatar import (
     AvatarFile,
     LoadedAvatar,
@@ -32,11 +33,30 @@ from app.protocol.avatar import (
     parse_avatar_json,
 )
 from app.resources import bodies_dir
-from app.science.avatar.configuration import AvatarProblem, AvatarSettingsError, Configuration
+from app.science.avatar.configuration import (
+    AvatarProblem,
+    AvatarSettingsError,
+    Configuration,
+    missing_part_problems,
+)
 from app.science.avatar.mjcf import default_configuration
 
 SHIPPED = "standard"
 """The key of the configuration that comes with the product."""
+_GAINS_BY_RULE = (
+    "Gains by rule, not tuned: the natural frequency chosen for each body part, with the inertia"
+    " that each axis moves in a body of 1.75 m and 72 kg (app/science/avatar/mjcf/gains.py)."
+    " Torque limits are estimates."
+)
+_GAINS_BY_RELAY = (
+    "Gains by relay tuning of the neutral body, 1.75 m and 72 kg: rule critical, left side copied"
+    " to the right, 89 axes tuned, none flagged, overshoot of 1.2 % at most. The relay's torques"
+    " were computed from the inertia of each axis, and were up to four times its torque limit; the"
+    " present tuning, which finds them by a ramp within the limits, gives a kp within 10 % and a"
+    " kd within 5 % on every axis. Torque limits are estimates."
+)
+SHIPPED_GAINS_FROM = (_GAINS_BY_RULE, _GAINS_BY_RELAY)
+"""Where the gains of each shipped version come from, as its note tells."""
 _SHIPPED_TITLE = "Standard"
 _PRODUCT = "system"
 
@@ -51,9 +71,18 @@ def create_avatar(
 ) -> AvatarVersion:
     """Save an avatar configuration under a new key.
 
-    Raises Conflict if the key is taken, InvalidConfig with every problem of the configuration.
+    Raises InvalidInput if the key reads as another value, Conflict if it is taken, InvalidConfig
+    with every problem of the configuration.
     """
-    content = checked(db, request.configuration)
+    if request.key in NO_NAMES:
+        raise InvalidInput(
+            f"no avatar can have the key {request.key!r}: study files and tables read that as a "
+            "value of their own",
+            value=request.key,
+            valid=f"any other key than {', '.join(sorted(NO_NAMES))}",
+            remedy="Choose another key.",
+        )
+    content = _buildable(db, request.configuration)
     if db.get(Avatar, request.key) is not None:
         raise Conflict(
             f"there is an avatar {request.key!r} already",
@@ -78,15 +107,25 @@ def add_avatar_version(
     *,
     report: Mapping[str, Any] | None = None,
 ) -> AvatarVersion:
-    """Append a version, or return the newest one if its content is the same.
+    """Append a version, or return the newest one if it is the same: a request may be sent twice.
 
-    Raises StaleVersion if somebody saved a version meanwhile, InvalidConfig, NotFound.
+    Raises StaleVersion if somebody saved a version meanwhile, Conflict if the newest one has this
+    content and another note, which would be lost, InvalidConfig, NotFound.
     """
-    content = checked(db, request.configuration)
+    content = _buildable(db, request.configuration)
     avatar = avatar_by_key(db, key, lock=True)
     newest = newest_version(db, avatar)
     if newest.content_hash == content.content_hash:
-        return newest
+        if request.note in ("", newest.note):
+            return newest
+        raise Conflict(
+            f"nothing new was saved: {key}@{newest.number} has these settings already, with"
+            " another note",
+            value=request.note,
+            valid=newest.note,
+            remedy="Use that version, whose note stays as it is; or save with the note what changes"
+            " something.",
+        )
     if request.based_on != newest.number:
         raise StaleVersion(
             "somebody else has changed this avatar in the meantime",
@@ -114,20 +153,25 @@ def add_shipped_avatar(db: Session, now: datetime) -> None:
     """Store the shipped configuration, unless the lab has saved its own version under its key.
 
     A new installation gets the versions of earlier releases as well, because studies name them. The
-    body must have been stored before (`add_shipped_bodies`).
+    body must have been stored before (`add_shipped_bodies`). Each version's note says where its
+    gains come from; a version that an earlier release stored without one gets it now.
     """
     contents = [loaded(configuration) for configuration in shipped_configurations()]
     content = contents[-1]
+    notes = {one.content_hash: note for one, note in zip(contents, SHIPPED_GAINS_FROM, strict=True)}
     avatar = db.get(Avatar, SHIPPED)
     if avatar is None:
         db.add(Avatar(key=SHIPPED, title=_SHIPPED_TITLE, by=_PRODUCT, at=now))
         db.flush()
         for number, one in enumerate(contents, start=1):
-            _append(db, SHIPPED, number, one, "shipped", "", _PRODUCT, now)
+            _append(db, SHIPPED, number, one, "shipped", notes[one.content_hash], _PRODUCT, now)
         return
+    for row in db.scalars(select(AvatarVersion).filter_by(key=SHIPPED, origin="shipped", note="")):
+        row.note = notes.get(row.content_hash, "")
     newest = newest_version(db, avatar)
     if newest.origin == "shipped" and newest.content_hash != content.content_hash:
-        _append(db, SHIPPED, newest.number + 1, content, "shipped", "", _PRODUCT, now)
+        note = notes[content.content_hash]
+        _append(db, SHIPPED, newest.number + 1, content, "shipped", note, _PRODUCT, now)
 
 
 def avatar_by_key(db: Session, key: str, *, lock: bool = False) -> Avatar:
@@ -139,7 +183,12 @@ def avatar_by_key(db: Session, key: str, *, lock: bool = False) -> Avatar:
     avatar = db.scalar(query.with_for_update() if lock else query)
     if avatar is None:
         keys = list(db.scalars(select(Avatar.key).order_by(Avatar.key)))
-        raise NotFound(f"there is no avatar {key!r}", value=key, valid=keys)
+        raise NotFound(
+            f"there is no avatar {key!r}",
+            value=key,
+            valid=keys,
+            remedy="Name one of these, or make it on the page Avatars.",
+        )
     return avatar
 
 
@@ -149,6 +198,15 @@ def newest_numbers(db: Session) -> dict[str, int]:
         select(AvatarVersion.key, func.max(AvatarVersion.number)).group_by(AvatarVersion.key)
     )
     return {key: number for key, number in rows}  # noqa: C416 - rows are not tuples to mypy
+
+
+def all_versions(db: Session) -> list[tuple[Avatar, list[AvatarVersion]]]:
+    """Return every avatar by key, with its versions, oldest first."""
+    rows = list(db.scalars(select(AvatarVersion).order_by(AvatarVersion.number)))
+    return [
+        (avatar, [row for row in rows if row.key == avatar.key])
+        for avatar in db.scalars(select(Avatar).order_by(Avatar.key))
+    ]
 
 
 def newest_version(db: Session, avatar: Avatar) -> AvatarVersion:
@@ -172,6 +230,7 @@ def version_of(db: Session, key: str, number: int | None) -> AvatarVersion:
             f"the avatar {key!r} has no version {number}",
             value=number,
             valid=f"1 to {newest_version(db, avatar).number}",
+            remedy="Name a version that was saved, or leave it out for the newest.",
         )
     return row
 
@@ -196,14 +255,34 @@ def configurations(db: Session) -> Callable[[str, int], Configuration | None]:
 
 
 def typed(version: AvatarVersion) -> Configuration:
-    """Return the parsed configuration of an avatar version."""
+    """Return the parsed configuration of an avatar version.
+
+    Raises NotDurable if its content does not have its hash, because the database was damaged.
+    """
     return _parsed(version.content_hash, version.canonical_json)
 
 
 @lru_cache(maxsize=64)
 def _parsed(content_hash: str, canonical_json: str) -> Configuration:
-    with unpacking(canonical_json, content_hash):
-        return parse_avatar_json(canonical_json)
+    require_sound(canonical_json, content_hash)
+    return parse_avatar_json(canonical_json)
+
+
+def faulty_avatars(db: Session) -> tuple[int, list[StoredFault]]:
+    """Return how many versions of avatars are stored, and what is wrong with some of them."""
+    query = select(AvatarVersion).order_by(AvatarVersion.key, AvatarVersion.number)
+    rows = list(db.scalars(query))
+    found = (
+        stored_fault(
+            row.key,
+            row.number,
+            (row.canonical_json, row.content_hash),
+            parse_avatar_json,
+            lambda one: (problem.message for problem in missing_part_problems(one)),
+        )
+        for row in rows
+    )
+    return len(rows), [one for one in found if one is not None]
 
 
 def checked(db: Session, file: AvatarFile) -> LoadedAvatar:
@@ -216,20 +295,33 @@ def checked(db: Session, file: AvatarFile) -> LoadedAvatar:
             raise AvatarSettingsError(problems)
         return loaded(configuration)
     except AvatarSettingsError as error:
-        raise InvalidConfig(
-            "the avatar's configuration contradicts itself",
-            remedy="Correct what is named below; nothing was saved.",
-            details=[
-                {
-                    "path": f"configuration.{one.path}",
-                    "message": one.message,
-                    "value": one.value,
-                    "valid": one.valid,
-                    "remedy": one.remedy,
-                }
-                for one in error.problems
-            ],
-        ) from None
+        raise _invalid(error.problems) from None
+
+
+def _buildable(db: Session, file: AvatarFile) -> LoadedAvatar:
+    """Return the validated configuration of a file of which a body can be built."""
+    content = checked(db, file)
+    problems = tuple(missing_part_problems(content.configuration))
+    if problems:
+        raise _invalid(problems)
+    return content
+
+
+def _invalid(problems: Iterable[AvatarProblem]) -> InvalidConfig:
+    return InvalidConfig(
+        "the avatar's configuration contradicts itself",
+        remedy="Correct what is named below; nothing was saved.",
+        details=[
+            {
+                "path": f"configuration.{one.path}",
+                "message": one.message,
+                "value": one.value,
+                "valid": one.valid,
+                "remedy": one.remedy,
+            }
+            for one in problems
+        ],
+    )
 
 
 def unknown_humanoid(db: Session, configuration: Configuration) -> Iterator[AvatarProblem]:

@@ -7,36 +7,42 @@ from itertools import groupby
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.errors import Conflict
+from app.errors import Conflict, NotDurable
 from app.features.movement.avatar.schemas import (
     AvatarCheck,
     AvatarSummary,
     AvatarVersionDetail,
     AvatarVersionView,
     AvatarView,
+    ModelToTry,
 )
 from app.features.movement.avatar.service import (
     avatar_by_key,
+    checked,
     newest_version,
     typed,
     unknown_humanoid,
     version_of,
 )
+from app.features.movement.avatar.use import used_by
 from app.features.movement.humanoids import humanoid_by_hash, parsed_figure
 from app.models import Avatar, AvatarVersion, Study, StudySession
 from app.platform.access import Caller, visible_to
 from app.platform.config_problems import problem_views
 from app.protocol import ConfigError, ConfigProblem
 from app.protocol.avatar import file_of, load_avatar, parse_avatar_json
+from app.protocol.avatar_joints import joint_views
 from app.science.avatar.body import BodyError
-from app.science.avatar.configuration import Configuration
-from app.science.avatar.mjcf import AvatarModel, avatar_model
+from app.science.avatar.configuration import Configuration, missing_part_problems
+from app.science.avatar.mjcf import FLOOR_ONLY, AvatarModel, LooseBox, Scene, avatar_model
 
 MEDIA_TYPE = "application/xml"
+_BOX_PLACE_M = (0.0, 4.0, 0.0)
+"""Where a box hovers that has not been dropped: above every body."""
 
 
 def avatar_list(db: Session, caller: Caller) -> list[AvatarSummary]:
-    """Return every avatar of the lab, by key."""
+    """Return every avatar of the lab, by key; damaged ones are named as such."""
     rows = db.scalars(select(AvatarVersion).order_by(AvatarVersion.key, AvatarVersion.number))
     titles = {avatar.key: avatar.title for avatar in db.scalars(select(Avatar))}
     used = _sessions_by_hash(db, caller)
@@ -78,7 +84,7 @@ def check_text(db: Session, text: str) -> AvatarCheck:
     """Return the configuration in a file, or every problem of the file with its place."""
     try:
         content = load_avatar(text)
-        _check_humanoid(db, content.configuration)
+        _check_body(db, content.configuration)
     except ConfigError as error:
         return AvatarCheck(ok=False, problems=problem_views(error))
     same = db.execute(
@@ -94,8 +100,8 @@ def check_text(db: Session, text: str) -> AvatarCheck:
     )
 
 
-def _check_humanoid(db: Session, configuration: Configuration) -> None:
-    for one in unknown_humanoid(db, configuration):
+def _check_body(db: Session, configuration: Configuration) -> None:
+    for one in (*missing_part_problems(configuration), *unknown_humanoid(db, configuration)):
         problem = ConfigProblem(one.path, 0, 0, one.message, one.value, one.valid, one.remedy)
         raise ConfigError([problem])
 
@@ -104,26 +110,33 @@ def _summary(
     key: str, title: str, versions: Sequence[AvatarVersion], used: dict[str, int]
 ) -> AvatarSummary:
     newest = versions[-1]
-    configuration = typed(newest)
+    try:
+        configuration = typed(newest)
+    except NotDurable:
+        configuration = None
     return AvatarSummary(
         key=key,
         title=title,
         newest=version_view(newest),
         versions=len(versions),
-        axes=len(configuration.axes),
-        locked_axes=len(configuration.locked_axes),
+        content_hashes=[row.content_hash for row in versions],
+        axes=None if configuration is None else len(configuration.axes),
+        locked_axes=None if configuration is None else len(configuration.locked_axes),
         sessions=sum(used.get(one, 0) for one in {row.content_hash for row in versions}),
     )
 
 
 def _detail(db: Session, caller: Caller, avatar: Avatar, row: AvatarVersion) -> AvatarVersionDetail:
+    configuration = typed(row)
     return AvatarVersionDetail(
         **version_view(row).model_dump(),
         key=avatar.key,
         title=avatar.title,
-        configuration=file_of(typed(row)),
+        configuration=file_of(configuration),
+        joints=joint_views(configuration),
         report=row.report,
         sessions=_sessions_by_hash(db, caller, row.content_hash).get(row.content_hash, 0),
+        used_by=used_by(db, caller, row),
     )
 
 
@@ -146,13 +159,12 @@ def model_of(db: Session, key: str, number: int | None, stature_m: float) -> Ava
     """Return the MuJoCo model of a version, or of the newest for None, on a floor.
 
     The stature is rounded to the millimetre. Raises NotFound, and Conflict if the configuration
-    lacks a part that the body needs.
+    lacks a part that the body needs; NotDurable if the stored version was damaged.
     """
     version = version_of(db, key, number)
-    humanoid = typed(version).humanoid
-    figure = None if humanoid is None else humanoid_by_hash(db, humanoid).figure
+    typed(version)
     try:
-        return _built(version.content_hash, version.canonical_json, figure, round(stature_m, 3))
+        return _model(db, version.content_hash, version.canonical_json, stature_m, FLOOR_ONLY)
     except BodyError as error:
         raise Conflict(
             f"this avatar cannot be built: {error}",
@@ -161,12 +173,45 @@ def model_of(db: Session, key: str, number: int | None, stature_m: float) -> Ava
         ) from None
 
 
+def model_to_try(db: Session, request: ModelToTry) -> AvatarModel:
+    """Return the MuJoCo model of a configuration that need not be stored; nothing is stored.
+
+    Raises InvalidConfig with every problem of the configuration, and Conflict if it lacks a part
+    that the body needs.
+    """
+    content = checked(db, request.configuration)
+    box = request.box
+    scene = FLOOR_ONLY if box is None else Scene(loose=(_hovering(box.edge_m, box.mass_kg),))
+    try:
+        return _model(db, content.content_hash, content.canonical_json, request.stature_m, scene)
+    except BodyError as error:
+        raise Conflict(
+            f"this avatar cannot be built: {error}",
+            value=content.content_hash,
+            remedy="Correct the configuration and try again.",
+        ) from None
+
+
+def _hovering(edge_m: float, mass_kg: float) -> LooseBox:
+    half = edge_m / 2.0
+    return LooseBox("box", _BOX_PLACE_M, (half, half, half), mass_kg)
+
+
+def _model(
+    db: Session, content_hash: str, canonical_json: str, stature_m: float, scene: Scene
+) -> AvatarModel:
+    humanoid = parse_avatar_json(canonical_json).humanoid
+    figure = None if humanoid is None else humanoid_by_hash(db, humanoid).figure
+    return _built(content_hash, canonical_json, figure, round(stature_m, 3), scene)
+
+
 @lru_cache(maxsize=16)
 def _built(
-    _content_hash: str, canonical_json: str, figure: str | None, stature_m: float
+    _content_hash: str, canonical_json: str, figure: str | None, stature_m: float, scene: Scene
 ) -> AvatarModel:
     return avatar_model(
         parse_avatar_json(canonical_json),
         stature_m,
         figure=None if figure is None else parsed_figure(figure),
+        scene=scene,
     )

@@ -28,6 +28,7 @@ from app.features.movement.captures.schemas import (
     VerificationView,
 )
 from app.features.movement.captures.worker_tasks import (
+    generated_verification_json,
     retargeted_positions,
     verification_json,
     write_retargeted,
@@ -67,6 +68,24 @@ def delete_joint_map(
     """Reset the joint map to the proposal, as a new version."""
     reset_map(db, context, caller, capture_id, version)
     return joint_map_view(db, capture_id)
+
+
+@router.get("/generated/verification", response_model=VerificationView)
+async def get_generated_verification(
+    context: Context,
+    _: SignedIn,
+    *,
+    avatars: Annotated[list[Avatar], Query(min_length=1, max_length=MAX_AVATARS)],
+    lock_feet: bool = False,
+) -> Response:
+    """Return the verification of a generated walk of eight steps, which needs no capture."""
+    statures = tuple(dict.fromkeys(avatars))
+    return Response(
+        await context.part(CaptureQueue).run_cached(
+            generated_verification_json, statures, lock_feet=lock_feet
+        ),
+        media_type="application/json",
+    )
 
 
 @router.get("/{capture_id}/verification", response_model=VerificationView)

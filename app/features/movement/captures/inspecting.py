@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -16,7 +16,11 @@ from app.features.movement.captures.schemas import (
 )
 from app.features.movement.captures.source import Source
 from app.features.movement.files import compress, compressed_beside
+from app.science.anatomy import sentences
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
+
+if TYPE_CHECKING:
+    from app.science.fitting import Fitted
 
 KIND: dict[type, Literal["skeleton", "markers", "bodies"]] = {
     RigMotion: "skeleton",
@@ -114,8 +118,15 @@ def _skeleton(opened: Opened) -> SkeletonView | None:
         parents=list(rig.parents),
         unfitted=[] if fitted is None else list(fitted.unfitted),
         residual_m=None if fitted is None else _number(fitted.residual_m),
-        notes=[] if fitted is None else list(fitted.notes),
+        notes=[] if fitted is None else _notes_without_notices(fitted),
+        notices=list(opened.notices),
     )
+
+
+def _notes_without_notices(fitted: "Fitted") -> list[str]:
+    """Return the notes of a fit but its notices, which are shown on their own."""
+    told = sentences(fitted.notices)
+    return [note for note in fitted.notes if note not in told]
 
 
 def _number(value: float) -> float | None:

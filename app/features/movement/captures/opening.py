@@ -12,11 +12,15 @@ from typing import TYPE_CHECKING
 from app.adapters.captures import Capture, CaptureError, Limits, Reading, read_capture
 from app.features.movement.captures.source import Cannot, Source
 from app.features.movement.files import stored_files
+from app.science.anatomy import Notice
 from app.science.retargeting import (
     REFERENCE_JOINT_MAP,
     AvatarError,
+    JointMap,
     Retargeted,
+    checked_skeleton,
     named_avatar,
+    propose_joint_map,
     retarget_motion,
 )
 from app.science.rig import BodyMotion, RigError, RigMotion
@@ -30,12 +34,16 @@ MapPairs = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True, eq=False)
 class Opened:
-    """A capture with its skeleton: its own, a fitted one, or the reason why there is none."""
+    """A capture with its skeleton: its own, a fitted one, or the reason why there is none.
+
+    `notices` say what anatomy does not allow in either skeleton.
+    """
 
     capture: Capture
     skeleton: RigMotion | None
     fitted: "Fitted | None"
     no_skeleton: str | None
+    notices: tuple[Notice, ...] = ()
 
     @property
     def moving(self) -> RigMotion:
@@ -101,7 +109,9 @@ def _open(max_bytes: int, source: Source, files: Mapping[str, bytes]) -> Opened:
 
 def _with_skeleton(capture: Capture) -> Opened:
     if isinstance(capture.motion, RigMotion):
-        return Opened(capture, capture.motion, None, None)
+        joint_map = propose_joint_map(capture.motion.rig).joint_map
+        motion, notices = checked_skeleton(capture.motion, joint_map)
+        return Opened(capture, motion, None, None, (*capture.notices, *notices))
     # Imported here because it is slow to load; the server's process imports this module, too.
     from app.science.fitting import FitError, fit_skeleton
 
@@ -109,7 +119,7 @@ def _with_skeleton(capture: Capture) -> Opened:
         fitted = fit_skeleton(capture.motion)
     except FitError as error:
         return Opened(capture, None, None, str(error))
-    return Opened(capture, fitted.motion, fitted, None)
+    return Opened(capture, fitted.motion, fitted, None, fitted.notices)
 
 
 @dataclass(frozen=True)
@@ -128,13 +138,16 @@ class Mapped:
 
 def on_avatar(mapped: Mapped, avatar: str, *, lock_feet: bool) -> Retargeted:
     """Return the movement on the avatar of a stature, such as "165cm"; raise Cannot."""
+    return rig_on_avatar(mapped.moving, dict(mapped.joint_map), avatar, lock_feet=lock_feet)
+
+
+def rig_on_avatar(
+    moving: RigMotion, joint_map: JointMap, avatar: str, *, lock_feet: bool
+) -> Retargeted:
+    """Return any skeleton's movement on the avatar of a stature; raise Cannot."""
     try:
         return retarget_motion(
-            mapped.moving,
-            dict(mapped.joint_map),
-            named_avatar(avatar),
-            REFERENCE_JOINT_MAP,
-            lock=lock_feet,
+            moving, joint_map, named_avatar(avatar), REFERENCE_JOINT_MAP, lock=lock_feet
         )
     except (RigError, AvatarError) as error:
         raise Cannot(str(error)) from None

@@ -12,6 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from app.adapters.captures import WRITERS
+from app.plain_titles import PlainTitle
+from app.science.anatomy import Notice
+from app.science.retargeting import FloorClearance
 
 Kind = Literal["skeleton", "markers", "bodies"]
 Up = Literal["x", "y", "z"]
@@ -22,7 +25,7 @@ AVATAR = r"^[0-9]{2,3}(\.[0-9])?cm$"
 Avatar = Annotated[str, StringConstraints(pattern=AVATAR)]
 """A stature, such as "165cm" or "172.5cm", from 50 to 260 cm."""
 MetresPerUnit = Annotated[float, Field(ge=1e-6, le=1000.0, allow_inf_nan=False)]
-Title = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+Title = PlainTitle
 JointName = Annotated[str, StringConstraints(min_length=1, max_length=200)]
 MAX_AVATARS = 6
 MAX_BODY_JOINTS = 64
@@ -78,6 +81,7 @@ class SkeletonView(BaseModel):
     `parents` are indices into `joints`, -1 for the root. `unfitted` are joints that the markers do
     not show; `residual_m` is the distance of the fitted skeleton from the recording (root mean
     square), null for a skeleton of the file; `notes` say what was trimmed, bridged or left out.
+    `notices` are empty for captures that were inspected before bodies were checked by anatomy.
     """
 
     fingerprint: str
@@ -87,6 +91,7 @@ class SkeletonView(BaseModel):
     unfitted: list[str]
     residual_m: float | None
     notes: list[str]
+    notices: list[Notice] = []
 
 
 class CaptureSummary(BaseModel):
@@ -245,7 +250,8 @@ class AvatarWalkerView(WalkerView):
     each foot as often as the source. Slides are speeds of its feet while the *source's* are down:
     `slide_m_s` as shown here, `slide_before_m_s` before the feet were locked, null if they are not.
     With locked feet, `lowered_m` is how far the hips came down at most, and `out_of_reach` counts
-    frames in which a foot could not be kept in place.
+    frames in which a foot could not be kept in place. `floor` says how deep the feet are under the
+    floor, and by how much the body was raised for it; `notices` what the walk shows to be wrong.
     """
 
     stature_m: float
@@ -257,6 +263,8 @@ class AvatarWalkerView(WalkerView):
     slide_before_m_s: float | None
     lowered_m: float | None
     out_of_reach: int | None
+    floor: FloorClearance
+    notices: list[Notice]
 
 
 class VerificationView(BaseModel):

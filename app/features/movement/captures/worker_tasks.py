@@ -4,13 +4,20 @@ Everything that a task needs is in its arguments, which are hashable: the same c
 bytes. The verification of a walk is JSON, thinned for drawing.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from app.adapters.captures import writer_of
-from app.features.movement.captures.opening import Mapped, Store, on_avatar, open_stored
+from app.features.movement.captures.opening import (
+    Mapped,
+    Store,
+    on_avatar,
+    open_stored,
+    rig_on_avatar,
+)
 from app.features.movement.captures.preview import encode, points_of, skeleton_points, step_for
 from app.features.movement.captures.schemas import (
     AvatarWalkerView,
@@ -26,14 +33,16 @@ from app.features.movement.captures.source import Cannot, Source
 from app.science.retargeting import (
     REFERENCE_JOINT_MAP,
     AvatarFigures,
+    JointMap,
     LegAngles,
     Retargeted,
     Verification,
     Walk,
+    example_walk,
     named_stature_m,
     verify,
 )
-from app.science.rig import RigError
+from app.science.rig import RigError, RigMotion
 from app.science.rotations import FloatArray
 
 MAX_DRAWN_POINTS = 3000
@@ -44,8 +53,23 @@ _METRE_DIGITS, _DEGREE_DIGITS = 5, 3
 
 def verification_json(mapped: Mapped, avatars: tuple[str, ...], *, lock_feet: bool) -> bytes:
     """Return the verification on avatars such as "165cm", as a `VerificationView`; raise Cannot."""
-    source, joint_map = mapped.moving, dict(mapped.joint_map)
     moved = {name: on_avatar(mapped, name, lock_feet=lock_feet) for name in avatars}
+    return _verified(mapped.moving, dict(mapped.joint_map), moved, lock_feet=lock_feet)
+
+
+def generated_verification_json(avatars: tuple[str, ...], *, lock_feet: bool) -> bytes:
+    """Return the same of the generated walk, which needs no capture; raise Cannot."""
+    source = example_walk()
+    moved = {
+        name: rig_on_avatar(source, REFERENCE_JOINT_MAP, name, lock_feet=lock_feet)
+        for name in avatars
+    }
+    return _verified(source, REFERENCE_JOINT_MAP, moved, lock_feet=lock_feet)
+
+
+def _verified(
+    source: RigMotion, joint_map: JointMap, moved: Mapping[str, Retargeted], *, lock_feet: bool
+) -> bytes:
     try:
         found = verify(
             source,
@@ -125,6 +149,8 @@ def _avatar(
         slide_before_m_s=before,
         lowered_m=None if locked is None else locked.lowered_m,
         out_of_reach=None if locked is None else locked.out_of_reach,
+        floor=moved.floor,
+        notices=list(moved.notices),
     )
 
 

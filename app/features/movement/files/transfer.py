@@ -25,7 +25,13 @@ from app.platform.trouble import not_durable_error
 
 BLOCK_BYTES = 1024 * 1024
 FileName = Annotated[
-    str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f/\\]+$")
+    str,
+    StringConstraints(
+        min_length=1,
+        max_length=200,
+        # No control characters, none that turn the direction of writing around, no folders.
+        pattern=r"^[^\x00-\x1f\x7f\u200e\u200f\u202a-\u202e\u2066-\u2069/\\]+$",
+    ),
 ]
 BYTES = "application/octet-stream"
 BINARY: dict[str, Any] = {"schema": {"type": "string", "format": "binary"}}

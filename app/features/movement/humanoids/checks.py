@@ -1,11 +1,14 @@
 """Check a body before somebody wears it, by its measures and its licence."""
 
+import math
 from collections.abc import Iterator, Sequence
 
 from app.features.movement.humanoids.licences import asked_terms, licence_of, term_of
-from app.features.movement.humanoids.schemas import BodyCheck
+from app.features.movement.humanoids.schemas import BodyCheck, CheckKey, CheckStatus, Term
 from app.models import HumanoidRow
 from app.science.avatar.body import FINGER_PARTS, FINGERS, SIDES, Figure
+from app.science.rotations import identity
+from app.science.skeleton import JOINT_COUNT, JOINT_INDEX, build_skeleton, forward_kinematics
 
 TRIANGLE_BUDGET = 20_000
 """The most triangles of a body that a standalone headset can draw twice, once in the mirror.
@@ -19,6 +22,11 @@ _ABOUT_POSE = ("turned upright", "T-pose")
 _ABOUT_LENGTHS = ("unusual", "proportions")
 
 
+HALF_BOX_M = 0.09
+"""Half the width of a box of the shipped hand task: a hand farther off misses the box."""
+REACH_STATURE_M = 1.7
+
+
 def checks_of(row: HumanoidRow, figure: Figure) -> Iterator[BodyCheck]:
     """Yield the checks of a body in the order in which they are shown."""
     absent = [part for part in figure.absent if part not in FINGER_PARTS]
@@ -26,6 +34,7 @@ def checks_of(row: HumanoidRow, figure: Figure) -> Iterator[BodyCheck]:
     yield _fingers(figure)
     yield _sentences("rest_pose", figure.notes, _ABOUT_POSE)
     yield _sentences("proportions", figure.notes, _ABOUT_LENGTHS)
+    yield _reach(figure)
     yield _triangles(row.triangles)
     yield _hulls(figure)
     licence = licence_of(row)
@@ -52,6 +61,54 @@ def _sentences(key: str, notes: Sequence[str], words: Sequence[str]) -> BodyChec
     return BodyCheck.model_validate(
         {"key": key, "status": "note" if found else "good", "notes": found}
     )
+
+
+def reach_off_m(figure: Figure) -> float | None:
+    """Return how far a body's hand is from that of a participant who reaches straight ahead, m.
+
+    Both are `REACH_STATURE_M` tall, and the body copies the angles of the participant's joints,
+    whose lengths are the published ones of the product's skeleton. The larger one of both hands;
+    None if the body lacks an arm.
+    """
+    own, body = build_skeleton(REACH_STATURE_M), figure.scaled(REACH_STATURE_M).places_m
+    upright = identity(JOINT_COUNT)
+    standing = forward_kinematics(own, own.offsets_m[0], upright).positions_m
+    offs = []
+    for side in SIDES:
+        names = (f"{side}UpperArm", f"{side}LowerArm", f"{side}Hand")
+        if any(name not in body for name in names):
+            return None
+        mine = [standing[JOINT_INDEX[name]].tolist() for name in names]
+        offs.append(math.dist(_reaching(mine), _reaching([body[name] for name in names])))
+    return round(max(offs), 4)
+
+
+def _reaching(arm: Sequence[Sequence[float]]) -> tuple[float, float, float]:
+    """Return where the wrist is when the arm is stretched ahead, along -z, from the shoulder."""
+    (x, y, z), elbow, wrist = arm
+    return (x, y, z - math.dist((x, y, z), elbow) - math.dist(elbow, wrist))
+
+
+def _reach(figure: Figure) -> BodyCheck:
+    off_m = reach_off_m(figure)
+    if off_m is None:
+        return BodyCheck(key="reach", status="unknown", limit=HALF_BOX_M)
+    status: CheckStatus = "warn" if off_m > HALF_BOX_M else "good"
+    return BodyCheck(key="reach", status=status, value=off_m, limit=HALF_BOX_M)
+
+
+def attention_of(
+    triangles: int | None, off_m: float | None, asked: Sequence[Term]
+) -> list[CheckKey]:
+    """Return the checks of a body that ask for attention, in the order in which they are shown."""
+    found: list[CheckKey] = []
+    if off_m is not None and off_m > HALF_BOX_M:
+        found.append("reach")
+    if triangles is not None and triangles > TRIANGLE_BUDGET:
+        found.append("triangles")
+    if asked:
+        found.append("wearing")
+    return found
 
 
 def _triangles(count: int | None) -> BodyCheck:

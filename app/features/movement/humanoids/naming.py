@@ -15,6 +15,7 @@ from app.features.movement.humanoids.schemas import BodyChange, BodyTitle, Term
 from app.features.movement.humanoids.service import humanoid_by_hash
 from app.features.people.audit import record
 from app.models import HumanoidRow
+from app.plain_titles import NO_NAMES
 
 _RESERVED = "configuration"
 """What results call the body of a study's avatar configuration, which has no name of its own."""
@@ -76,6 +77,14 @@ def _give_name(db: Session, actor: str, row: HumanoidRow, name: str, now: dateti
             value=name,
             valid=row.name,
             remedy="Records refer to the body by its name. Change its title instead.",
+        )
+    if name in NO_NAMES:
+        raise InvalidInput(
+            f"no body can be called {name!r}: study files and tables read that as a value of "
+            "their own",
+            value=name,
+            valid=f"any other name than {', '.join(sorted(NO_NAMES))}",
+            remedy="Choose another name.",
         )
     if name == _RESERVED:
         raise InvalidInput(

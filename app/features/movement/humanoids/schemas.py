@@ -3,19 +3,15 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, ConfigDict, Field
 
 from app.adapters.humanoids import Permission, Wearers
+from app.plain_titles import PlainTitle
 from app.protocol import BodyName
 
 BonesBy = Literal["vrm", "names"]
 Origin = Literal["shipped", "uploaded"]
-BodyTitle = Annotated[
-    str,
-    StringConstraints(
-        strip_whitespace=True, min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$"
-    ),
-]
+BodyTitle = PlainTitle
 Use = Literal[
     "commercial", "modification", "redistribution", "violent", "sexual", "political", "antisocial"
 ]
@@ -23,7 +19,15 @@ Term = Literal["only_author", "only_licensed_people"]
 """A term of a licence that somebody has to confirm: only the author, or only people to whom the
 author has given permission, may wear the body."""
 CheckKey = Literal[
-    "parts", "fingers", "rest_pose", "proportions", "triangles", "hulls", "licence", "wearing"
+    "parts",
+    "fingers",
+    "rest_pose",
+    "proportions",
+    "reach",
+    "triangles",
+    "hulls",
+    "licence",
+    "wearing",
 ]
 CheckStatus = Literal["good", "note", "warn", "unknown"]
 
@@ -88,7 +92,9 @@ class HumanoidListed(BaseModel):
     studies call it, null until it is given. `stature_m` is its own; an avatar has that of its
     participant. `bones_by`: whether bones were identified by VRM's map or by their names. Counts
     are of body parts that the model has, and of those with a convex piece; those of triangles,
-    vertices and textures are null if an earlier release measured the body.
+    vertices and textures are null if an earlier release measured the body. `attention`: the checks
+    that ask for attention before somebody wears it; `reach_off_m`: how far its hand is from that of
+    a participant who reaches straight ahead, for a stature of 1.7 m.
     """
 
     content_hash: str
@@ -107,6 +113,8 @@ class HumanoidListed(BaseModel):
     vertices: int | None
     textures: int | None
     licence: LicenceView | None
+    attention: list[CheckKey]
+    reach_off_m: float | None
     by: str
     at: datetime
 

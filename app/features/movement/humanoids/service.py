@@ -1,13 +1,14 @@
 """Query the bodies of the lab: lists, single bodies and figures for avatars."""
 
 from functools import lru_cache
+from typing import Any
 
 from sqlalchemy import func, select
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, defer
 
 from app.errors import NotFound
 from app.features.movement.files import size_of
-from app.features.movement.humanoids.checks import checks_of
+from app.features.movement.humanoids.checks import attention_of, checks_of, reach_off_m
 from app.features.movement.humanoids.licences import asked_terms, confirmations_of, licence_of
 from app.features.movement.humanoids.schemas import (
     HumanoidListed,
@@ -20,12 +21,8 @@ from app.protocol.humanoid import parse_figure
 from app.science.avatar.body import Figure
 
 _COLUMNS = (
-    HumanoidRow.hash.label("content_hash"),
-    *(HumanoidRow.file_name, HumanoidRow.stature_m, HumanoidRow.bones_by, HumanoidRow.parts),
-    *(HumanoidRow.pieces, HumanoidRow.left_fingers, HumanoidRow.right_fingers),
-    *(HumanoidRow.name, HumanoidRow.title, HumanoidRow.origin, HumanoidRow.licence),
-    *(HumanoidRow.triangles, HumanoidRow.vertices, HumanoidRow.textures),
-    *(HumanoidRow.by, HumanoidRow.at, CaptureContent.size.label("size_bytes")),
+    *("file_name", "stature_m", "bones_by", "parts", "pieces", "left_fingers", "right_fingers"),
+    *("name", "title", "origin", "triangles", "vertices", "textures", "by", "at"),
 )
 
 
@@ -87,17 +84,39 @@ def parsed_figure(text: str) -> Figure:
 def humanoid_page(db: Session, *, limit: int, offset: int) -> HumanoidPage:
     """Return a page of the list, newest first, without figures, which are long."""
     rows = (
-        select(*_COLUMNS)
+        select(HumanoidRow, CaptureContent.size)
         .join(CaptureContent, CaptureContent.hash == HumanoidRow.hash)
+        .options(defer(HumanoidRow.figure))
         .order_by(HumanoidRow.at.desc(), HumanoidRow.hash)
         .limit(limit)
         .offset(offset)
     )
     total = db.scalars(select(func.count()).select_from(HumanoidRow)).one()
-    listed = [dict(row) for row in db.execute(rows).mappings()]
-    return HumanoidPage(
-        humanoids=[HumanoidListed.model_validate(row) for row in listed], total=total
-    )
+    listed = [HumanoidListed.model_validate(_listed(row, size)) for row, size in db.execute(rows)]
+    return HumanoidPage(humanoids=listed, total=total)
+
+
+def _listed(row: HumanoidRow, size_bytes: int) -> dict[str, Any]:
+    """Return what a list shows of a body."""
+    off_m = _reach_off_m(row)
+    return {
+        "content_hash": row.hash,
+        **{name: getattr(row, name) for name in _COLUMNS},
+        "licence": licence_of(row),
+        "attention": attention_of(row.triangles, off_m, asked_terms(row)),
+        "reach_off_m": off_m,
+        "size_bytes": size_bytes,
+    }
+
+
+_reaches_m: dict[str, float | None] = {}
+
+
+def _reach_off_m(row: HumanoidRow) -> float | None:
+    """Return the measure of a body's figure, which never changes and is slow to parse."""
+    if row.hash not in _reaches_m:
+        _reaches_m[row.hash] = reach_off_m(parsed_figure(row.figure))
+    return _reaches_m[row.hash]
 
 
 def humanoid_view(db: Session, content_hash: str) -> HumanoidView:
@@ -106,27 +125,10 @@ def humanoid_view(db: Session, content_hash: str) -> HumanoidView:
     figure = parsed_figure(row.figure)
     return HumanoidView.model_validate(
         {
-            "content_hash": row.hash,
-            "name": row.name,
-            "title": row.title,
-            "origin": row.origin,
-            "triangles": row.triangles,
-            "vertices": row.vertices,
-            "textures": row.textures,
-            "licence": licence_of(row),
+            **_listed(row, size_of(db, row.hash)),
             "asked": list(asked_terms(row)),
             "confirmations": confirmations_of(row),
             "checks": list(checks_of(row, figure)),
-            "file_name": row.file_name,
-            "size_bytes": size_of(db, row.hash),
-            "stature_m": row.stature_m,
-            "bones_by": row.bones_by,
-            "parts": row.parts,
-            "pieces": row.pieces,
-            "left_fingers": row.left_fingers,
-            "right_fingers": row.right_fingers,
-            "by": row.by,
-            "at": row.at,
             "present": list(figure.places_m),
             "absent": list(figure.absent),
             "simple": list(figure.without_piece),

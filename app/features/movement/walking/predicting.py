@@ -89,21 +89,22 @@ def predict(store: Store, content_hash: str, question: Question) -> Json:
     try:
         dependencies, assumed = _dependencies(fit, path, question.stature_m)
         rng = np.random.default_rng(question.seed)
-        prob = Predictor(fit.prob, follower)
-        drawn = prob.predict(path, dependencies, question.count, rng)
+        usual = Predictor(fit.usual, follower)
+        drawn = usual.predict(path, dependencies, question.count, rng)
         fixed = {
             model.name: _fixed(Predictor(model, follower), path, dependencies, rng)
             for model in (fit.stat, fit.adapt)
         }
         shown = drawn.vectors[: question.shown]
-        walkers = _walkers(prob, path, shown, drawn.durations_s[: question.shown])
+        walkers = _walkers(usual, path, shown, drawn.durations_s[: question.shown])
     except WalkingError as error:
         raise Cannot(str(error), "Draw a path that is more like the model's walks.") from None
     return {
         "points_m": path.points_m.tolist(),
+        "model": fit.usual.name,
         "dependencies": dependencies,
         "assumed": assumed,
-        "outside": _outside(fit, dependencies),
+        "outside": fit.outside(dependencies),
         "durations_s": np.sort(drawn.durations_s).round(4).tolist(),
         "quantiles_s": dict(
             zip(
@@ -135,18 +136,6 @@ def _dependencies(
         assumed.append(STATURE)
     found = dependencies_of(path, stature_m)
     return {name: found[name] for name in base.names}, assumed
-
-
-def _outside(fit: FittedWalking, dependencies: dict[str, float]) -> list[str]:
-    """Return the dependencies outside the range of the walks that the model was fitted to."""
-    base = fit.database
-    return [
-        name
-        for at, name in enumerate(base.names)
-        if not base.vectors[:, at].min() - 1e-9
-        <= dependencies[name]
-        <= base.vectors[:, at].max() + 1e-9
-    ]
 
 
 def _fixed(

@@ -14,7 +14,6 @@ from app.platform.workers import Worker
 
 WITHIN_S = 120.0
 """Time limit of one prediction; tables of hours of tracks take half a minute."""
-MAX_CACHED = 64
 
 
 def load() -> None:
@@ -29,16 +28,11 @@ class PredictionQueue(JobQueue):
     messages: ClassVar[JobMessages] = JobMessages(
         busy="the server is busy with other predictions of walking",
         cannot="the prediction cannot be computed",
-        ended="the process that computed it ended",
         less="Take fewer walks, fewer draws or a shorter path.",
-        otherwise="See the server's log for details.",
         log="a prediction of walking could not be computed",
     )
     within_s: float = WITHIN_S
     _worker: Worker = field(default_factory=lambda: Worker(load))
-
-    def _cache_is_full(self) -> bool:
-        return len(self._cache) > MAX_CACHED
 
     def _refusal(self, error: Exception) -> InvalidInput | None:
         if not isinstance(error, Cannot):

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.adapters.captures import CaptureError, Limits, Reading, read_capture
 from app.adapters.walks import load_scene
-from app.adapters.walks.track_table import TrackReading, read_tracks
+from app.adapters.walks.track_table import TrackReading, TrackTable, read_track_table
 from app.database import make_engine
 from app.features.movement.files import plain_pieces
 from app.features.movement.walking.sources import (
@@ -26,6 +26,7 @@ from app.science.rig import RigError
 from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.recording import (
     LeftOut,
+    Recorded,
     TrackingOptions,
     Walker,
     entry_of,
@@ -74,20 +75,25 @@ def planned_walks(store: Store, source: WalkSource, scene: str | None) -> list[P
 
 def tracks_of(data: bytes, source: TrackSource) -> list[Track]:
     """Return the tracks of a table; raise Cannot with the line."""
+    return table_of(data, source).tracks
+
+
+def table_of(data: bytes, source: TrackSource) -> TrackTable:
+    """Return the tracks of a table with what was assumed; raise Cannot with the line."""
     reading = TrackReading(
         rate_hz=source.rate_hz, metres_per_unit=source.metres_per_unit, kind=source.kind
     )
     try:
-        found = read_tracks(data, name=source.name, reading=reading)
+        found = read_track_table(data, name=source.name, reading=reading)
         subjects, titles = dict(source.subjects), dict(source.titles)
         statures_m = dict(source.statures_m)
         tracks = []
-        for track in found:
+        for track in found.tracks:
             subject = subjects.get(track.subject, track.subject)
             title = titles.get(track.subject, track.source)
             stature_m = statures_m.get(subject)
             tracks.append(replace(track, subject=subject, source=title, stature_m=stature_m))
-        return tracks
+        return TrackTable(tracks, found.assumed)
     except CaptureError as error:
         at = f"line {error.line}: " if error.line else ""
         raise Cannot(f"{source.name}, {at}{error.reason}", "Correct the table.") from None
@@ -111,8 +117,13 @@ def walks_in(tracks: Sequence[Track]) -> list[Walk]:
 def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
     """Find the path of each walk, on an open floor if there is no scene; raise Cannot."""
     planner = None if scene is None else LazyThetaPlanner(scene)
-    entries = []
+    entries, recorded = [], Recorded()
     for number, walk in enumerate(walks, start=1):
+        if objection := recorded.objection(walk, f"walk {number}, of {walk.subject}"):
+            raise Cannot(
+                f"walk {number}, of {walk.subject} ({walk.source}): {objection}",
+                "Correct the table, or leave the walk out.",
+            )
         used = planner or LazyThetaPlanner(open_scene(walk.start_m, walk.goal_m))
         try:
             entry = entry_of(walk, used)

@@ -5,10 +5,12 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, WithJsonSchema
 
+from app.plain_titles import PlainTitle
+
 Kind = Literal["human", "synthetic"]
 State = Literal["fitting", "stopped", "ready", "failed"]
 Stage = Literal["waiting", "walks", "maps", "blending"]
-Title = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+Title = PlainTitle
 Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80)]
 SceneKey = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")]
 RecordId = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{32}$")]
@@ -101,7 +103,8 @@ class WalksSummary(BaseModel):
     """The summary of a set of walks.
 
     `cut_by_recording`: walks during which a recording begins or ends. `missing_dependencies`: those
-    that only some walks have, so that no model can depend on them.
+    that only some walks have, so that no model can depend on them. `assumed`: what a table did not
+    say and was assumed. `doubts`: why its unit or its rate is doubtful.
     """
 
     walks: int
@@ -112,6 +115,8 @@ class WalksSummary(BaseModel):
     dependencies: dict[str, Range]
     missing_dependencies: list[str]
     census: CensusView
+    assumed: list[str] = []
+    doubts: list[str] = []
 
 
 class PopulationView(BaseModel):

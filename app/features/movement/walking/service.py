@@ -1,12 +1,12 @@
 """Order, stop, resume and delete models of how people walk."""
 
-from typing import cast
+from typing import Final, cast
 
-from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.errors import Conflict, NotFound, NotNow
+from app.errors import Conflict
 from app.features.movement.files import drop_unused, size_of
+from app.features.movement.jobs import JobKind
 from app.features.movement.walking.fit_queue import FitQueue
 from app.features.movement.walking.models.schemas import (
     FittedOn,
@@ -21,44 +21,34 @@ from app.features.movement.walking.schemas import FitChoice, Kind, NewModel, Sta
 from app.features.movement.walking.set_sources import source_of_set
 from app.features.movement.walking.sources import FitOrder
 from app.features.movement.walking.walk_sets import walk_set_by_id, walk_set_view
-from app.features.people.audit import record
 from app.models import WalkingModelRow, new_id
 from app.platform.access import Caller
 from app.platform.context import AppContext
 
-
-def model_by_id(db: Session, model_id: str, *, lock: bool = False) -> WalkingModelRow:
-    """Return the model with this id; raise NotFound if there is none."""
-    row = db.get(WalkingModelRow, model_id, with_for_update=lock)
-    if row is None:
-        raise NotFound("there is no such model", value=model_id)
-    return row
+MODELS: Final = JobKind(
+    table=WalkingModelRow,
+    noun="model",
+    running="fitting",
+    action="walking.model",
+    subject="walking_model",
+    details=lambda row: {"kind": row.kind, "content": (row.content_hash or "")[:12]},
+)
 
 
 def ready_content(db: Session, model_id: str) -> tuple[str, str]:
     """Return the content hash and title of a fitted model; raise NotFound or NotNow."""
-    row = model_by_id(db, model_id)
-    if row.state != "ready" or row.content_hash is None:
-        raise NotNow(
-            "this model is not fitted yet",
-            value=row.state,
-            valid="ready",
-            remedy="Wait until it is, or resume it.",
-        )
-    return row.content_hash, row.title
+    row = MODELS.ready(db, model_id)
+    return cast("str", row.content_hash), row.title
 
 
 def model_list(db: Session, context: AppContext) -> list[ModelListed]:
     """Return all models, newest first."""
-    rows = db.scalars(
-        select(WalkingModelRow).order_by(WalkingModelRow.at.desc(), WalkingModelRow.id)
-    )
-    return [_listed(row, context) for row in rows]
+    return [_listed(row, context) for row in MODELS.newest_first(db)]
 
 
 def model_view(db: Session, context: AppContext, model_id: str) -> ModelView:
     """Return one walking model in full; raise NotFound if there is none with this id."""
-    row = model_by_id(db, model_id)
+    row = MODELS.by_id(db, model_id)
     content_hash = row.content_hash
     return ModelView(
         **_listed(row, context).model_dump(),
@@ -71,7 +61,10 @@ def model_view(db: Session, context: AppContext, model_id: str) -> ModelView:
 
 
 def order_model(db: Session, context: AppContext, caller: Caller, request: NewModel) -> str:
-    """Store the order of a model and return its id; `begin_fit` starts it after the commit."""
+    """Store the order of a model and return its id; `follow_fit` starts it after the commit.
+
+    Raises NotFound, Conflict, or Busy if too many models are being fitted.
+    """
     walks = walk_set_by_id(db, request.walk_set_id)
     scene = None if request.scene is None else scene_view(db, request.scene)
     if scene is not None and walks.origin["kind"] == "population":
@@ -94,9 +87,7 @@ def order_model(db: Session, context: AppContext, caller: Caller, request: NewMo
         by=caller.actor,
         at=context.clock.utc_now(),
     )
-    db.add(row)
-    db.flush()
-    _record(db, context, caller, row, "walking.model_ordered")
+    MODELS.order(db, context, caller, row)
     return row.id
 
 
@@ -105,7 +96,7 @@ def order_of(db: Session, model_id: str) -> FitOrder:
 
     Raises NotFound, or Conflict if the scene has changed since the order.
     """
-    row = model_by_id(db, model_id)
+    row = MODELS.by_id(db, model_id)
     if row.walk_set_id is None:
         raise Conflict("the walks of this model were deleted", value=row.walk_set["title"])
     scene = None
@@ -129,51 +120,27 @@ def order_of(db: Session, model_id: str) -> FitOrder:
     )
 
 
-def begin_fit(context: AppContext, model_id: str) -> ModelView:
-    """Start the fit of a stored order."""
+def follow_fit(context: AppContext, model_id: str) -> ModelView:
+    """Start, keep or end the fit of a model as its committed state says, and return the model."""
+    context.part(FitQueue).follow(model_id, order_of)
     with context.database.reading() as db:
-        order = order_of(db, model_id)
-        context.part(FitQueue).order(model_id, order)
         return model_view(db, context, model_id)
 
 
-def mark_stopped(db: Session, context: AppContext, caller: Caller, model_id: str) -> None:
-    """Mark a fit as stopped; raise NotFound, or NotNow if it is not being fitted."""
-    row = _in_state(db, model_id, "fitting")
-    row.state = "stopped"
-    db.flush()
-    _record(db, context, caller, row, "walking.model_stopped")
-
-
-def mark_resumed(db: Session, context: AppContext, caller: Caller, model_id: str) -> None:
-    """Mark a stopped or failed fit as resumed; raise NotFound, NotNow or Conflict."""
-    row = _in_state(db, model_id, "stopped", "failed")
+def resume_fit(db: Session, context: AppContext, caller: Caller, model_id: str) -> None:
+    """Mark a stopped or failed fit as resumed; raise NotFound, NotNow, Conflict or Busy."""
+    MODELS.resume(db, context, caller, model_id)
     order_of(db, model_id)
-    row.state, row.trouble = "fitting", None
-    db.flush()
-    _record(db, context, caller, row, "walking.model_resumed")
 
 
 def remove_model(db: Session, context: AppContext, caller: Caller, model_id: str) -> None:
     """Delete a model, fitted or not; raise NotFound if there is none with this id."""
-    row = model_by_id(db, model_id, lock=True)
-    db.delete(row)
-    db.flush()
-    if row.content_hash is not None:
-        drop_unused(db, row.content_hash)
-    _record(db, context, caller, row, "walking.model_removed")
 
+    def drop_file(row: WalkingModelRow) -> None:
+        if row.content_hash is not None:
+            drop_unused(db, row.content_hash)
 
-def _in_state(db: Session, model_id: str, *states: State) -> WalkingModelRow:
-    row = model_by_id(db, model_id, lock=True)
-    if row.state not in states:
-        raise NotNow(
-            f"the model is {row.state}",
-            value=row.state,
-            valid=list(states),
-            remedy="Reload the page: somebody else has changed its state, or it has ended.",
-        )
-    return row
+    MODELS.remove(db, context, caller, model_id, drop_file)
 
 
 def _listed(row: WalkingModelRow, context: AppContext) -> ModelListed:
@@ -193,18 +160,4 @@ def _listed(row: WalkingModelRow, context: AppContext) -> ModelListed:
         by=row.by,
         at=row.at,
         ended_at=row.ended_at,
-    )
-
-
-def _record(
-    db: Session, context: AppContext, caller: Caller, row: WalkingModelRow, action: str
-) -> None:
-    # The id, not the title, which may contain a person's name: the audit trail cannot be erased.
-    record(
-        db,
-        actor=caller.actor,
-        action=action,
-        subject=f"walking_model:{row.id}",
-        details={"kind": row.kind, "content": (row.content_hash or "")[:12]},
-        now=context.clock.utc_now(),
     )

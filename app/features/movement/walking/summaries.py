@@ -11,6 +11,7 @@ from app.science.walking.evaluation import (
     neighbours_left_out,
     nodes_left_out,
     people_left_out,
+    times_left_out,
 )
 from app.science.walking.models import FittedWalking
 from app.science.walking.recording import census
@@ -40,7 +41,7 @@ def walks_summary(entries: Sequence[PlannedWalk]) -> Json:
 def model_summary(fit: FittedWalking, digest: str) -> Json:
     """Return a `ModelSummary` of a fitted model."""
     base, static = fit.database, fit.static
-    seeds = np.random.default_rng(fit.options.seed).spawn(2)
+    seeds = np.random.default_rng(fit.options.seed).spawn(3)
     people = people_left_out(
         base, fit.reading, seeds[0], entries=fit.options.entries, k=fit.options.k
     )
@@ -64,6 +65,7 @@ def model_summary(fit: FittedWalking, digest: str) -> Json:
             "nodes": _left_out(nodes_left_out(fit.space, seeds[1])),
             "people": _left_out(people),
         },
+        "predicted": [asdict(one) for one in times_left_out(base, seeds[2])],
         "census": asdict(census(base.lengths_m.tolist())),
     }
 

@@ -78,7 +78,11 @@ def slice_of(store: Store, content_hash: str, question: SliceQuestion) -> dict[s
 
 
 def _tracks_summary(data: bytes, source: TrackSource) -> dict[str, Any]:
-    from app.features.movement.walking.reading import planned, tracks_of, walks_in
+    from app.features.movement.walking.reading import planned, table_of, walks_in
     from app.features.movement.walking.summaries import walks_summary
+    from app.science.walking.recording import doubts_about
 
-    return walks_summary(planned(walks_in(tracks_of(data, source)), None))
+    table = table_of(data, source)
+    walks = walks_in(table.tracks)
+    notices = {"assumed": list(table.assumed), "doubts": doubts_about(walks)}
+    return walks_summary(planned(walks, None)) | notices

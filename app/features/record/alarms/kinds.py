@@ -233,7 +233,7 @@ ALARMS: tuple[AlarmKind, ...] = (
     AlarmKind(
         key="stop_asked",
         severity="critical",
-        title=Words(en="The participant wants to stop", de="Die Person möchte aufhören"),
+        title=Words(en="The participant wants to stop", de="Stopp verlangt"),
         remedy=Words(
             en="Go to the participant. Then press the button or resume, or end the session.",
             de="Gehen Sie zur Person. Drücken Sie danach den Knopf oder setzen Sie fort, oder "

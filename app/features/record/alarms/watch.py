@@ -151,6 +151,7 @@ class QualityWatch:
             "gaps": max((tally.gaps for tally in tallies), default=0),
             "gap_s": round(max((tally.gap_s for tally in tallies), default=0.0), 2),
             "frames_flagged": sum(tally.flagged for tally in tallies),
+            "frames_flagged_of_participant": 0 if target is None else target.tally.flagged,
             "clock_uncertainty_ms": None
             if uncertainty_s is None
             else round(1e3 * uncertainty_s, 1),

@@ -7,12 +7,13 @@ added latency comes on top of it, so an export contains these numbers along with
 from datetime import date, datetime
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, NotFound
 from app.models import Calibration, new_id
+from app.plain_titles import plain
 
 Milliseconds = Annotated[float, Field(ge=0, le=10_000, allow_inf_nan=False)]
 Line = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=120)]
@@ -26,7 +27,7 @@ class NewCalibration(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    equipment: Line
+    equipment: Annotated[Line, AfterValidator(plain)]
     motion_to_photon_ms: Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]
     sd_ms: Milliseconds
     samples: int = Field(ge=1, le=1_000_000)

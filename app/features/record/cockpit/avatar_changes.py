@@ -76,8 +76,13 @@ def avatar_choices(db: Session, session: StudySession) -> AvatarChoices:
     )
 
 
-def avatar_changes_view(db: Session, session: StudySession) -> AvatarChangesView | None:
-    """Return the changes in force; None if nothing was ever changed, or the session has ended."""
+def avatar_changes_view(
+    db: Session, session: StudySession, *, blinded: bool
+) -> AvatarChangesView | None:
+    """Return the changes in force; None if nothing was ever changed, or the session has ended.
+
+    `blinded` readers do not get the headset's own words, which may name the body that is worn.
+    """
     in_force = avatar_in_force(db, session)
     if in_force is None:
         return None
@@ -87,7 +92,7 @@ def avatar_changes_view(db: Session, session: StudySession) -> AvatarChangesView
         study=in_force.study,
         operator=in_force.operator,
         applied=None if report is None else report.applied,
-        problem=None if report is None else report.problem,
+        problem=None if report is None or blinded else report.problem,
         gravity=settings.gravity,
         self_collision=settings.self_collision,
         held_parts=list(settings.held_parts),

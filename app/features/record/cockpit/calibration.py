@@ -4,10 +4,15 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.features.record.cockpit.schemas import BodyCalibrationView, GoalsView
-from app.features.record.headset import newest_goals
+from app.features.record.cockpit.schemas import (
+    BodyCalibrationView,
+    CalibrationStepView,
+    GoalsView,
+)
+from app.features.record.headset import calibration_underway, newest_goals
 from app.features.record.sessions import newest_calibration, state_of
 from app.models import StudySession
+from app.platform.hub import Hub
 
 _CM_PER_M = 100.0
 _DIGITS = 2
@@ -19,11 +24,19 @@ def goals_view(db: Session, session: StudySession) -> GoalsView | None:
     return None if goals is None else GoalsView(source=goals.source, states=dict(goals.states))
 
 
-def calibration_view(db: Session, session: StudySession) -> BodyCalibrationView | None:
-    """Return the newest calibration and the orders since; None if there is neither."""
+def calibration_view(db: Session, hub: Hub, session: StudySession) -> BodyCalibrationView | None:
+    """Return the newest calibration, the one under way and the orders; None without any of them."""
     newest, ordered = newest_calibration(db, session), state_of(session).calibration
-    if newest is None and ordered is None:
+    step = calibration_underway(db, hub, session.id)
+    if newest is None and ordered is None and step is None:
         return None
+    underway = (
+        None
+        if step is None
+        else CalibrationStepView(
+            step=step.step, number=step.number, total=step.total, problem=step.problem
+        )
+    )
     report: dict[str, Any] = {} if newest is None else dict(newest.report)
     shifts_m = {} if ordered is None else ordered.shifts_m
     return BodyCalibrationView(
@@ -37,6 +50,7 @@ def calibration_view(db: Session, session: StudySession) -> BodyCalibrationView 
         notices=list(report.get("notices", ())),
         wanted=ordered is not None and ordered.wanted,
         shifts_cm={goal: (_cm(x), _cm(y), _cm(z)) for goal, (x, y, z) in shifts_m.items()},
+        underway=underway,
     )
 
 

@@ -152,6 +152,7 @@ def _avatar_change(
 
     The changes must fit the configuration and the study's changes in the current phase.
     """
+    # `CommandRequest` has seen to it that they are given.
     changes = request.avatar_changes or AvatarChanges()
     physics = session.avatar_configuration_hash
     before = state_of(session).avatar_changes

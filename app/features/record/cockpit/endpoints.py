@@ -37,11 +37,13 @@ from app.features.record.sessions import (
     is_repeated,
     join,
     protocol_of_session,
+    state_of,
     store_content,
 )
 from app.models import TelemetryStream
 from app.platform.access import is_blind, session_by_id
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
+from app.wire import PARTICIPANT_STREAMS, REPORT_STREAM
 
 router = APIRouter(tags=["sessions"])
 
@@ -166,22 +168,30 @@ def post_submission(
 
 
 @router.get("/sessions/{session_id}/streams")
-def get_streams(session_id: str, db: Reading, _: SignedIn) -> list[StreamView]:
-    """Return how much of each stream is on disk, for every epoch of the headset."""
-    session_by_id(db, session_id)
+def get_streams(session_id: str, db: Reading, caller: SignedIn) -> list[StreamView]:
+    """Return how much of each stream is on disk, for every epoch of the headset.
+
+    Blinded readers get that of the reports only between phases: a report follows every contact. Of
+    the avatar's frames they never get how many are flagged: that depends on its settings.
+    """
+    session = session_by_id(db, session_id)
+    blinded = is_blind(db, caller, protocol_of_session(db, session), session)
+    is_hidden = blinded and state_of(session).phase is not None
+    shown = (*PARTICIPANT_STREAMS, REPORT_STREAM)
     return [
         StreamView(
             stream=row.stream,
             epoch=row.epoch,
             next_seq=row.next_seq,
             frames_stored=row.frames_stored,
-            frames_flagged=row.frames_flagged,
+            frames_flagged=None if blinded and row.stream not in shown else row.frames_flagged,
         )
         for row in db.scalars(
             select(TelemetryStream)
             .where(TelemetryStream.session_id == session_id)
             .order_by(TelemetryStream.epoch, TelemetryStream.stream)
         )
+        if not (is_hidden and row.stream == REPORT_STREAM)
     ]
 
 

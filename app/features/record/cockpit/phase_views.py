@@ -24,8 +24,20 @@ class _Latency(TypedDict):
     movement_s: float | None
 
 
+class _Counts(TypedDict):
+    """The fields of `PhaseView` that count what happened in the phase."""
+
+    completions: int | None
+    side_contacts: int | None
+    side_contact_s: float | None
+
+
 def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[PhaseView]:
-    """Return all phases of a session in order; latencies are omitted for a blinded operator."""
+    """Return all phases of a session in order; latencies are omitted for a blinded operator.
+
+    While a phase runs, its completions and contacts are, too: the moment at which a count rises,
+    beside the participant's pose, is late by the latency.
+    """
     completions = dict(
         db.execute(
             select(Completion.phase_id, func.count())
@@ -52,15 +64,23 @@ def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[Ph
             body=None if blinded else phase.body,
             status=phase.status,
             active_s=phase.active_s,
-            completions=completions.get(phase.phase_id, 0),
-            side_contacts=sides.get(phase.phase_id, (0, 0.0))[0],
-            side_contact_s=sides.get(phase.phase_id, (0, 0.0))[1],
+            **_counts(
+                completions.get(phase.phase_id, 0),
+                sides.get(phase.phase_id, (0, 0.0)),
+                hidden=blinded and phase.ended_at is None,
+            ),
             **_latency(latencies.get(phase.phase_id), blinded=blinded),
             started_at=phase.started_at,
             ended_at=phase.ended_at,
         )
         for phase in phases
     ]
+
+
+def _counts(completions: int, sides: tuple[int, float], *, hidden: bool) -> _Counts:
+    if hidden:
+        return _Counts(completions=None, side_contacts=None, side_contact_s=None)
+    return _Counts(completions=completions, side_contacts=sides[0], side_contact_s=sides[1])
 
 
 def _latency(row: PhaseLatency | None, *, blinded: bool) -> _Latency:

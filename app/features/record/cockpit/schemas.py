@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from app.features.record.alarms import AlarmView
 from app.features.record.ledger import Kind, Shortfall
 from app.features.record.questionnaires import StoredScores
+from app.features.record.self_tests import RunningTest
 from app.features.record.sessions import ConsentForm, PaperConsent
 from app.protocol import AvatarChanges, FormPlace, StepKind
 
@@ -87,7 +88,7 @@ class CommandRequest(BaseModel):
     """An operator's command, with the version of the session that their page showed.
 
     Commands in `NEVER_STALE` apply to any version and may omit `expected_version`.
-    `avatar_changes` replaces the operator's earlier changes; left out, they are taken back.
+    `avatar_changes` replaces the operator's earlier changes; empty, it takes them back.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -107,6 +108,8 @@ class CommandRequest(BaseModel):
     def _on_a_version(self) -> Self:
         if self.expected_version is None and self.type not in NEVER_STALE:
             raise ValueError(f"expected_version is missing: {self.type} applies to one version")
+        if self.type == "change_avatar" and self.avatar_changes is None:
+            raise ValueError("avatar_changes is missing: {} takes the operator's changes back")
         return self
 
 
@@ -183,7 +186,7 @@ class RefusalView(BaseModel):
 
 
 class DeviceView(BaseModel):
-    """A device that is paired with a session."""
+    """A device that is paired with a session; `self_test`: what a headset makes of itself now."""
 
     id: str
     kind: Literal["tablet", "headset"]
@@ -191,13 +194,15 @@ class DeviceView(BaseModel):
     paired_at: datetime
     connected: bool
     last_seen_at: datetime | None
+    self_test: RunningTest | None
 
 
 class PhaseView(BaseModel):
     """A phase that has been prepared, with what has happened in it so far.
 
     `side_contacts` counts how many times a side turned red; `side_contact_s` is the total duration,
-    in seconds of active time.
+    in seconds of active time. Both, and `completions`, are null for blinded readers until the phase
+    has ended: the moment at which they rise reveals the latency.
 
     The achieved latency is measured once the phase has ended; `movement_s` is null until then. It
     has a 95 % interval; if it cannot be determined, it is null and `latency_reason` says why.
@@ -214,9 +219,9 @@ class PhaseView(BaseModel):
     body: str | None
     status: PhaseStatus
     active_s: float
-    completions: int
-    side_contacts: int
-    side_contact_s: float
+    completions: int | None
+    side_contacts: int | None
+    side_contact_s: float | None
     achieved_latency_ms: float | None
     achieved_low_ms: float | None
     achieved_high_ms: float | None
@@ -264,8 +269,10 @@ class AvatarChangesView(BaseModel):
     """The changes to the avatar that are in force: those of the study, and those of the operator.
 
     `applied`: whether the headset has carried them out, or null while it has not answered;
-    `problem`: why it could not. `gravity`, `self_collision`, parts in a cast (`held_parts`) and
-    parts without collider (`passing_parts`) are those that result, with the avatar's configuration.
+    `problem`: why it could not, in the headset's words; null for readers who must not know the
+    condition, because the words may name the body. `gravity`, `self_collision`, parts in a cast
+    (`held_parts`) and parts without collider (`passing_parts`) are those that result, with the
+    avatar's configuration.
     """
 
     revision: int
@@ -286,12 +293,22 @@ class GoalsView(BaseModel):
     states: dict[GoalName, Literal["tracked", "inferred", "lost"]]
 
 
+class CalibrationStepView(BaseModel):
+    """How far a calibration under way is; `problem`: what keeps the step from being done."""
+
+    step: str
+    number: int
+    total: int
+    problem: str | None
+
+
 class BodyCalibrationView(BaseModel):
     """The newest calibration of the headset, and what the operator ordered since.
 
     `at` and what was measured are null before the first calibration; `residuals_cm`: how far each
     goal was off in the poses that test it. `wanted`: a calibration was ordered and has not been
-    reported yet. `shifts_cm`: shifts in force, to the right, up and to the back.
+    reported yet. `shifts_cm`: shifts in force, to the right, up and to the back. `underway`: null
+    while the participant is not being calibrated.
     """
 
     at: datetime | None
@@ -304,14 +321,26 @@ class BodyCalibrationView(BaseModel):
     notices: list[str]
     wanted: bool
     shifts_cm: dict[GoalName, tuple[float, float, float]]
+    underway: CalibrationStepView | None
+
+
+class NamedAvatar(BaseModel):
+    """The version of an avatar that a study names, and the name that people gave the avatar."""
+
+    key: str
+    title: str
+    version: int
 
 
 class SessionView(SessionSummary):
     """Everything the cockpit shows of a session.
 
-    `sequence` and latencies are null if the reader is `blinded`. `alarms`: the open alarms, oldest
+    `sequence` and latencies are null if the reader is `blinded`. `avatar_configuration_hash`
+    identifies the content of the physics avatar, `avatar_version` where it is found; both are null
+    for an avatar without physics. `alarms`: the open alarms, oldest
     first. `avatar_changes`: null until the running avatar is changed. `goals`: null unless the
-    headset's program reports them. `calibration`: null before the first calibration or order.
+    headset's program reports them. `calibration`: null before the first calibration begins or is
+    ordered.
     """
 
     blinded: bool
@@ -319,6 +348,7 @@ class SessionView(SessionSummary):
     study_title: str
     avatar: str
     avatar_configuration_hash: str | None
+    avatar_version: NamedAvatar | None
     language: str
     version: int
     time_scale: float
@@ -350,10 +380,14 @@ class EventView(BaseModel):
 
 
 class StreamView(BaseModel):
-    """The amount of one stream that is on disk, for one epoch of the headset."""
+    """The amount of one stream that is on disk, for one epoch of the headset.
+
+    `frames_flagged`: how many have values that no summary uses; null for blinded readers, except of
+    the participant's own movement.
+    """
 
     stream: str
     epoch: int
     next_seq: int
     frames_stored: int
-    frames_flagged: int
+    frames_flagged: int | None

@@ -2,9 +2,10 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from typing import Any, TypedDict
 
-from sqlalchemy import select
-from sqlalchemy.orm import Session, defer
+from sqlalchemy import Row, select
+from sqlalchemy.orm import Session
 
 from app.database import referenced_row
 from app.features.design.instruments import instrument_of
@@ -18,6 +19,7 @@ from app.features.record.cockpit.schemas import (
     DeviceView,
     EventView,
     HeldView,
+    NamedAvatar,
     NoteView,
     RefusalView,
     SessionSummary,
@@ -28,6 +30,7 @@ from app.features.record.cockpit.schemas import (
 from app.features.record.devices import TABLET_SILENT_AFTER_S, devices_of_session
 from app.features.record.ledger import shortfalls_of, slot_of
 from app.features.record.questionnaires import stored_scores
+from app.features.record.self_tests import running_test
 from app.features.record.sessions import (
     SessionState,
     allowed_commands,
@@ -39,7 +42,15 @@ from app.features.record.sessions import (
     state_of,
     without_condition,
 )
-from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession, StudyVersion
+from app.models import (
+    Avatar,
+    LedgerSlot,
+    Participant,
+    SlotAttempt,
+    Study,
+    StudySession,
+    StudyVersion,
+)
 from app.platform.access import Caller, hidden_sessions, is_blind
 from app.platform.context import AppContext
 from app.protocol import Step, StudyProtocol
@@ -55,9 +66,8 @@ def session_view(
     blinded = is_blind(db, caller, protocol, session)
     state, plan, slot = state_of(session), plan_of(db, session), slot_of(db, session)
     reasons, alarms = _reasons(db, session), open_alarms(db, session.id)
-    summary = _summary(
-        session, protocol, version, _code(db, session), slot.sequence, blinded=blinded
-    )
+    order = _HIDDEN_ORDER if blinded else _order(protocol, slot.sequence)
+    summary = _summary(session, version.number, _code(db, session), order)
     return SessionView(
         **summary.model_dump(),
         blinded=blinded,
@@ -65,6 +75,7 @@ def session_view(
         study_title=chosen(protocol.title, "en"),
         avatar=session.avatar,
         avatar_configuration_hash=session.avatar_configuration_hash,
+        avatar_version=_named_avatar(db, protocol, session),
         language=session.language,
         version=session.version,
         time_scale=session.time_scale,
@@ -81,37 +92,62 @@ def session_view(
         phases=phase_views(db, session, blinded=blinded),
         notes=_notes(db, session),
         scores=stored_scores(db, session),
-        avatar_changes=avatar_changes_view(db, session),
+        avatar_changes=avatar_changes_view(db, session, blinded=blinded),
         goals=goals_view(db, session),
-        calibration=calibration_view(db, session),
+        calibration=calibration_view(db, context.hub, session),
     )
+
+
+def _named_avatar(
+    db: Session, protocol: StudyProtocol, session: StudySession
+) -> NamedAvatar | None:
+    named = protocol.avatar_configuration
+    if named is None or session.avatar_configuration_hash is None:
+        return None
+    title = db.scalar(select(Avatar.title).where(Avatar.key == named.key))
+    return NamedAvatar(key=named.key, title=title or named.key, version=named.version)
 
 
 def list_sessions(
     db: Session, study: Study, kind: str | None, caller: Caller
 ) -> list[SessionSummary]:
     """Return all sessions of a study, newest first; orders are omitted if `caller` is blinded."""
+    # Only the columns shown: a thousand complete sessions with their snapshots would be most of the
+    # work.
     query = (
-        select(StudySession, Participant.code, LedgerSlot.sequence)
+        select(
+            StudySession.id,
+            StudySession.study_version_id,
+            StudySession.kind,
+            StudySession.status,
+            StudySession.created_at,
+            StudySession.started_at,
+            StudySession.ended_at,
+            StudySession.shortfalls,
+            Participant.code,
+            LedgerSlot.sequence,
+        )
         .join(Participant, Participant.id == StudySession.participant_id)
         .join(SlotAttempt, SlotAttempt.session_id == StudySession.id)
         .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
         .where(StudySession.study_id == study.id)
         .order_by(StudySession.created_at.desc())
-        # Loading a snapshot and the protocol with each of a thousand rows would be most of the
-        # work.
-        .options(defer(StudySession.snapshot, raiseload=True))
     )
     if kind is not None:
         query = query.where(StudySession.kind == kind)
     versions = {version.id: version for version in versions_of(db, study)}
     hidden = hidden_sessions(db, study, caller)
+    orders: dict[tuple[str, ...], _Order] = {}
     summaries = []
-    for session, code, sequence in db.execute(query):
-        version = versions[session.study_version_id]
-        protocol = protocol_of(version)
-        blinded = session.id in hidden
-        summaries.append(_summary(session, protocol, version, code, sequence, blinded=blinded))
+    for row in db.execute(query):
+        version = versions[row.study_version_id]
+        if row.id in hidden:
+            order = _HIDDEN_ORDER
+        else:
+            order = orders.get((version.id, *row.sequence)) or orders.setdefault(
+                (version.id, *row.sequence), _order(protocol_of(version), row.sequence)
+            )
+        summaries.append(_summary(row, version.number, row.code, order))
     return summaries
 
 
@@ -127,7 +163,7 @@ def event_views(db: Session, session: StudySession, caller: Caller) -> list[Even
     for row in events_of(db, session.id):
         data = json.loads(row.payload)
         if blinded:
-            data = without_condition(data)
+            data = without_condition(row.type, data)
         views.append(
             EventView(
                 seq=row.seq,
@@ -141,26 +177,36 @@ def event_views(db: Session, session: StudySession, caller: Caller) -> list[Even
     return views
 
 
+class _Order(TypedDict):
+    """The fields of a summary that tell the order of conditions."""
+
+    sequence: list[float] | None
+    bodies: list[str | None] | None
+
+
+_HIDDEN_ORDER = _Order(sequence=None, bodies=None)
+
+
+def _order(protocol: StudyProtocol, sequence: Sequence[str]) -> _Order:
+    bodies = protocol.bodies_of(sequence)
+    return _Order(
+        sequence=[protocol.condition(key).latency_ms for key in sequence],
+        bodies=None if bodies is None else list(bodies),
+    )
+
+
 def _summary(
-    session: StudySession,
-    protocol: StudyProtocol,
-    version: StudyVersion,
-    code: str,
-    sequence: Sequence[str],
-    *,
-    blinded: bool,
+    session: StudySession | Row[Any], version_number: int, code: str, order: _Order
 ) -> SessionSummary:
-    latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
-    bodies = None if blinded else protocol.bodies_of(sequence)
+    """Summarise a session, or a row with the same names of its columns."""
     return SessionSummary(
         id=session.id,
         participant_code=code,
         kind=session.kind,
         simulated=session.kind == "simulated",
         status=session.status,
-        sequence=None if blinded else [latency_ms[key] for key in sequence],
-        bodies=None if bodies is None else list(bodies),
-        study_version=version.number,
+        **order,
+        study_version=version_number,
         created_at=session.created_at,
         started_at=session.started_at,
         ended_at=session.ended_at,
@@ -233,6 +279,7 @@ def _devices(db: Session, context: AppContext, session: StudySession) -> list[De
                 paired_at=device.paired_at,
                 connected=connected,
                 last_seen_at=context.hub.last_seen(device.id) or device.last_seen_at,
+                self_test=running_test(context, session.id) if device.kind == "headset" else None,
             )
         )
     return views

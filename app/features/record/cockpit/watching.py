@@ -23,6 +23,11 @@ RECHECK_S = 5.0
 A login that is ended elsewhere is noticed immediately, one that expires within this time.
 """
 
+SHOWN_BLINDED = frozenset({"phase_id", "active_s", "fps", "alarms"})
+"""The live figures that do not depend on the latency."""
+_ON_BEAT = "completions_on_beat"
+_FLAGGED, _OWN_FLAGGED = "frames_flagged", "frames_flagged_of_participant"
+
 
 def _existing_session(session_id: str, context: Context) -> str:
     """Return the session's id; raises NotFound before the stream has begun."""
@@ -115,9 +120,23 @@ async def get_live(
 def live_figures(figures: dict[str, Any], *, blinded: bool) -> dict[str, Any]:
     """Return the live figures that a reader may see.
 
-    Joint errors are omitted for blinded readers: they grow with the latency and so reveal the
-    condition.
+    Joint errors grow with the latency, and a contact or a completed task follows the participant's
+    movement by it. So blinded readers get neither joint errors nor side contacts nor the headset's
+    time, and the number of completed tasks as of the last full 10 s of the phase only. How many of
+    the avatar's frames are flagged depends on its settings: they get the participant's.
     """
+    signal = {"signal": _signal(figures["signal"], blinded=blinded)} if "signal" in figures else {}
     if not blinded:
-        return figures
-    return {name: value for name, value in figures.items() if name != "joint_error_deg"}
+        return {name: value for name, value in figures.items() if name != _ON_BEAT} | signal
+    shown = {name: value for name, value in figures.items() if name in SHOWN_BLINDED}
+    return shown | signal | ({"completions": figures[_ON_BEAT]} if _ON_BEAT in figures else {})
+
+
+def _signal(signal: dict[str, Any] | None, *, blinded: bool) -> dict[str, Any] | None:
+    """Return the figures of the signal with one count of flagged frames, the reader's."""
+    if signal is None:
+        return None
+    flagged = signal[_OWN_FLAGGED if blinded else _FLAGGED]
+    return {name: value for name, value in signal.items() if name != _OWN_FLAGGED} | {
+        _FLAGGED: flagged
+    }

@@ -1,14 +1,15 @@
 """HTTP endpoints for pairing and unpairing devices."""
 
 from datetime import datetime
-from typing import Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Request, Response
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
 
 from app.features.people.audit import record
 from app.features.record.devices.service import new_code, pair, revoke, usable_code
 from app.lan import qr_svg
+from app.plain_titles import plain
 from app.platform.access import session_by_id
 from app.platform.admission import TABLET_COOKIE
 from app.platform.dependencies import Context, SignedIn, Writing
@@ -51,7 +52,9 @@ class PairRequest(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     code: str = Field(min_length=4, max_length=20, json_schema_extra={"writeOnly": True})
-    name: str = Field(default="", max_length=80)
+    name: Annotated[
+        str, StringConstraints(strip_whitespace=True, max_length=80), AfterValidator(plain)
+    ] = ""
 
 
 class PairedView(BaseModel):

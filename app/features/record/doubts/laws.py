@@ -33,6 +33,7 @@ KINDS: dict[str, str] = {
     "walk_back": "walks back in a phase that has none",
     "epoch": "epochs of the headset that the server did not assign",
     "count": "more frames or reports than a headset can make",
+    "stature": "bodies worn at another stature than the participant's, as stated or calibrated",
     "observed": "contradictions that the server noticed while the headset was connected",
 }
 """All kinds of doubt, each with its meaning."""
@@ -49,6 +50,9 @@ TOUCH_S = 0.05
 
 People can tap a finger at most 7 times a second, and the things to touch are apart.
 """
+STATURE_M = 0.15
+"""How far two statures of one person may be apart: shoes, a guess at one's own height, and an eye
+height measured in a stoop together. Measuring again is no contradiction."""
 MAX_PER_S, HEAD_START_S = 1000.0, 60.0
 """The most frames (or reports) that a headset makes per second of its clock, more than twice what
 any headset displays; and how long an epoch may have run before the server first heard of it."""
@@ -138,12 +142,20 @@ class Coverage(NamedTuple):
     backwards: int
 
 
+class Stature(NamedTuple):
+    """A stature that held in a phase, and whose it is, in the words of a doubt."""
+
+    whose: str
+    stature_m: float
+
+
 @dataclass(frozen=True)
 class PhaseClaims:
     """A phase as the study defines it and as the headset reports it.
 
     `boxes`: how many boxes its task has; 0 if it has no task. `coverage` is None until it is
-    computed.
+    computed. `statures`: the participant's, the calibrations' and those of the bodies that were
+    worn, from the phase's beginning to its end.
     """
 
     phase_id: int
@@ -157,6 +169,7 @@ class PhaseClaims:
     contacts: tuple[Contacts, ...] = ()
     completed: tuple[Completed, ...] = ()
     coverage: Coverage | None = None
+    statures: tuple[Stature, ...] = ()
 
 
 class StreamClaim(NamedTuple):
@@ -196,6 +209,7 @@ def doubts_about(claims: SessionClaims) -> tuple[Doubt, ...]:
         found += _clock(phase, reports)
         found += _server(phase, claims.time_scale)
         found += _frames(phase, reports)
+        found += _statures(phase)
         if reports:
             # A phase without any report of its clock was not run by a headset of this protocol.
             found += _contacts(phase, reports)
@@ -400,6 +414,24 @@ def _running(own: Sequence[ClockReport]) -> _Running | None:
         offset_first_s=min(offsets),
         offset_last_s=max(offsets),
     )
+
+
+def _statures(phase: PhaseClaims) -> Iterator[Doubt]:
+    """Yield a doubt if a phase that counts was done at statures that are not one person's.
+
+    It concerns the session: naming the phase would tell a blinded reader where a body was worn.
+    """
+    if phase.status == "voided" or not phase.statures:
+        return
+    low = min(phase.statures, key=lambda one: one.stature_m)
+    high = max(phase.statures, key=lambda one: one.stature_m)
+    if high.stature_m - low.stature_m > STATURE_M:
+        message = (
+            f"{low.whose} is {low.stature_m:.2f} m, and {high.whose} {high.stature_m:.2f} m, more"
+            f" than {100 * STATURE_M:.0f} cm apart"
+        )
+        apart_m = high.stature_m - low.stature_m
+        yield Doubt(None, "stature", message, apart_m, STATURE_M, "m")
 
 
 def _by_epoch(reports: Iterable[ClockReport]) -> Iterator[tuple[int, list[ClockReport]]]:

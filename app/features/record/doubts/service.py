@@ -13,6 +13,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, and_, case, func, or_, select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies import version_content
 from app.features.record.doubts.laws import (
     CLOCK_S,
     ClockReport,
@@ -26,7 +27,8 @@ from app.features.record.doubts.laws import (
     StreamClaim,
     doubts_about,
 )
-from app.features.record.sessions import judge_again, plan_of, protocol_of_session
+from app.features.record.doubts.statures import read_statures
+from app.features.record.sessions import judge_again, plans_of
 from app.models import (
     AlarmRow,
     ClientReport,
@@ -202,29 +204,30 @@ class _Reader:
         contacts, completed = self._contacts(), self._completed()
         coverage = self._coverage()
         rows = self._of_chosen(select(Phase), Phase).scalars().all()
-        sessions = {row.session_id for row in rows}
-        query = select(StudySession).where(self._chosen)
-        designs = {
-            one.id: (plan_of(self._db, one), protocol_of_session(self._db, one))
-            for one in self._db.scalars(query)
-            if one.id in sessions
-        }
+        statures = read_statures(self._db, self._chosen, rows)
+        plans = plans_of(self._db, self._chosen)
+        query = select(StudySession.id, StudySession.study_version_id).where(self._chosen)
+        versions = {one.id: one.study_version_id for one in self._db.execute(query)}
+        boxes: dict[tuple[str, str, str | None], int] = {}
         found: dict[str, list[PhaseClaims]] = defaultdict(list)
         for row in sorted(rows, key=lambda one: (one.session_id, one.phase_id)):
-            plan, protocol = designs[row.session_id]
             key = (row.session_id, row.phase_id)
+            place = (versions[row.session_id], row.kind, row.limb)
+            if place not in boxes:
+                boxes[place] = _boxes(version_content(self._db, place[0]).protocol, row)
             claims = PhaseClaims(
                 phase_id=row.phase_id,
                 kind=row.kind,
                 limb=row.limb,
                 status=row.status,
                 active_s=row.active_s,
-                duration_s=plan[row.step_index].duration_s or 0.0,
-                boxes=_boxes(protocol, row),
+                duration_s=plans[row.session_id][row.step_index].duration_s or 0.0,
+                boxes=boxes[place],
                 moments=tuple(moments.get(key, ())),
                 contacts=tuple(contacts.get(key, ())),
                 completed=tuple(completed.get(key, ())),
                 coverage=coverage.get(key),
+                statures=statures.get(key, ()),
             )
             found[row.session_id].append(claims)
         return found

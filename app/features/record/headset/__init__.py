@@ -1,17 +1,30 @@
 """The headset of a session: its connection, the state it is sent, and its avatar."""
 
-from app.features.record.headset.goals import feet_tracked, newest_goals, state_of_feet
+from app.features.record.headset.avatar import SessionAvatar, trial_avatar
+from app.features.record.headset.connection import next_message
+from app.features.record.headset.goals import (
+    calibration_underway,
+    feet_tracked,
+    newest_goals,
+    state_of_feet,
+)
 from app.features.record.headset.poses import TOPICS, TOUCHES, Touch
 from app.features.record.headset.service import headset_state, participant_info, worn_humanoid
+from app.features.record.headset.serving import serve_headset
 
 __all__ = [
     "TOPICS",
     "TOUCHES",
+    "SessionAvatar",
     "Touch",
+    "calibration_underway",
     "feet_tracked",
     "headset_state",
     "newest_goals",
+    "next_message",
     "participant_info",
+    "serve_headset",
     "state_of_feet",
+    "trial_avatar",
     "worn_humanoid",
 ]

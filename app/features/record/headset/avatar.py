@@ -13,10 +13,17 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy.orm import Session
 
-from app.errors import Conflict, InvalidInput
-from app.features.movement.avatar import configuration_by_hash
-from app.features.movement.humanoids import body_by_name, figure_by_hash
+from app.errors import Conflict, InvalidInput, NotFound
+from app.features.movement.avatar import (
+    SHIPPED,
+    avatar_by_key,
+    configuration_by_hash,
+    newest_version,
+)
+from app.features.movement.humanoids import body_by_name, figure_by_hash, named_bodies
 from app.features.record.sessions import (
+    AVATAR,
+    RUNS,
     RecordAvatar,
     apply_command,
     content_body,
@@ -25,28 +32,31 @@ from app.features.record.sessions import (
     require_capture,
     store_content,
 )
+from app.models import StudySession
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.protocol import BodyName, StudyProtocol, Tasks
 from app.protocol.avatar import AvatarFile, file_of
-from app.science.avatar.body import BodyError, Figure
-from app.science.avatar.configuration import DEFAULT_OPTIONS, Configuration
+from app.science.avatar.body import BodyError, Figure, proportions
+from app.science.avatar.configuration import DEFAULT_OPTIONS, Configuration, missing_part_problems
 from app.science.avatar.mjcf import AvatarModel, avatar_model, scene_of
 
-Length = Annotated[float, Field(gt=0.0, le=3.0, allow_inf_nan=False)]
+Length = Annotated[float, Field(gt=0.0, le=3.0, allow_inf_nan=False, strict=True)]
 
 
 class AvatarWish(BaseModel):
     """A request for a physics avatar: the participant's stature and any other lengths measured.
 
     `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
-    the stature. `body`: the body to wear, one of those that the study's conditions name; if left
+    the stature. A body with a model of its own has its own lengths and uses none of
+    them, but they must fit the stature there, too. `body`:
+    the body to wear, one of those that the study's conditions name; if left
     out, the body of the avatar's configuration.
     """
 
     model_config = ConfigDict(extra="forbid")
 
-    stature_m: Annotated[float, Field(ge=0.5, le=2.6, allow_inf_nan=False)]
+    stature_m: Annotated[float, Field(ge=0.5, le=2.6, allow_inf_nan=False, strict=True)]
     segments_m: Annotated[dict[str, Length], Field(max_length=40)] = {}
     body: BodyName | None = None
 
@@ -74,8 +84,6 @@ class SessionAvatar(BaseModel):
     humanoid: str | None = None
 
 
-CONTENT = "avatar"
-"""The kind of stored content that contains avatar models."""
 MS_PER_S = 1000.0
 
 
@@ -91,8 +99,8 @@ def prepare(db: Session, session_id: str, request: AvatarWish) -> PreparedAvatar
     """Build the session's physics avatar; call this before opening the write transaction.
 
     Building takes too long for a write transaction, which others wait for. Raises Conflict if the
-    session's avatar is not a physics avatar, and InvalidInput for lengths that no body has and for
-    a body that no condition of the study names.
+    session's avatar is not a physics avatar, and InvalidInput for lengths
+    that no body has and for a body that no condition of the study names.
     """
     session = session_by_id(db, session_id)
     if session.avatar_configuration_hash is None:
@@ -103,15 +111,41 @@ def prepare(db: Session, session_id: str, request: AvatarWish) -> PreparedAvatar
         )
     configuration = configuration_by_hash(db, session.avatar_configuration_hash)
     protocol = protocol_of_session(db, session)
+    return _prepared(db, configuration, session.avatar_configuration_hash, protocol, request)
+
+
+def trial_avatar(db: Session, session_id: str, stature_m: float) -> SessionAvatar:
+    """Build the avatar that the session has at this stature, without recording it.
+
+    For a session without a physics avatar it is the newest version of the standard one.
+    """
+    session = session_by_id(db, session_id)
+    content_hash = session.avatar_configuration_hash
+    if content_hash is None:
+        content_hash = newest_version(db, avatar_by_key(db, SHIPPED)).content_hash
+    configuration = configuration_by_hash(db, content_hash)
+    protocol = protocol_of_session(db, session)
+    wish = AvatarWish(stature_m=stature_m)
+    return _prepared(db, configuration, content_hash, protocol, wish).avatar
+
+
+def _prepared(
+    db: Session,
+    configuration: Configuration,
+    configuration_hash: str,
+    protocol: StudyProtocol,
+    request: AvatarWish,
+) -> PreparedAvatar:
     configuration = _with_body(db, configuration, protocol, request.body)
     largest_s = max(one.latency_ms for one in protocol.conditions) / MS_PER_S
     longest_s = max(largest_s, DEFAULT_OPTIONS.longest_delay_s)
     stature_m = round(request.stature_m, 3)
     figure = figure_by_hash(db, configuration.humanoid)
-    model = _built(configuration, figure, stature_m, request.segments_m, protocol.tasks, longest_s)
+    measured_m = request.segments_m
+    model = _built(configuration, figure, stature_m, measured_m, protocol.tasks, longest_s)
     avatar = SessionAvatar(
         stature_m=stature_m,
-        configuration_hash=session.avatar_configuration_hash,
+        configuration_hash=configuration_hash,
         configuration=file_of(configuration),
         model_hash=model.content_hash,
         mjcf=model.mjcf,
@@ -120,7 +154,7 @@ def prepare(db: Session, session_id: str, request: AvatarWish) -> PreparedAvatar
         body=request.body,
         humanoid=configuration.humanoid,
     )
-    return PreparedAvatar(avatar, request.segments_m)
+    return PreparedAvatar(avatar, measured_m if figure is None else {})
 
 
 def record_avatar(
@@ -128,15 +162,23 @@ def record_avatar(
 ) -> None:
     """Record the model of an avatar, unless it is the last one recorded for the same body.
 
-    Raises Withdrawn and the other errors that apply to everything a headset sends.
+    Raises Conflict for another model after the session's end, and Withdrawn and the other errors
+    that apply to everything a headset sends.
     """
     session = session_by_id(db, session_id, lock=True)
     require_capture(db, session_id)
     avatar = prepared.avatar
-    recorded = [content_body(row) for row in contents_of(db, session.id, CONTENT)]
+    recorded = [content_body(row) for row in contents_of(db, session.id, AVATAR)]
     own = [one for one in recorded if isinstance(one, dict) and one.get("body") == avatar.body]
     if own and own[-1].get("model_hash") == avatar.model_hash:
         return
+    if session.status not in RUNS:
+        raise Conflict(
+            f"the session is {session.status}, so nobody wears another body in it",
+            value=session.status,
+            valid=list(RUNS),
+            remedy="Start another session.",
+        )
     body = {
         **({} if avatar.body is None else {"body": avatar.body, "humanoid": avatar.humanoid}),
         "stature_m": avatar.stature_m,
@@ -146,11 +188,35 @@ def record_avatar(
         "mjcf": avatar.mjcf,
     }
     now = context.clock.utc_now()
-    content = store_content(db, session_id=session.id, kind=CONTENT, body=body, by=actor, now=now)
+    content = store_content(db, session_id=session.id, kind=AVATAR, body=body, by=actor, now=now)
     command = RecordAvatar(
         configuration_hash=avatar.configuration_hash, content=content, body=avatar.body
     )
     apply_command(db, context, session, command, actor=actor)
+
+
+def require_own_body(db: Session, session_id: str, content_hash: str) -> None:
+    """Raise NotFound unless the session's avatar can wear the model with this hash."""
+    if content_hash not in _bodies_of(db, session_by_id(db, session_id)):
+        raise NotFound(
+            "the avatar of this session wears no such body",
+            value=content_hash,
+            remedy="Fetch the bodies that POST /api/vr/avatar names as 'humanoid'.",
+        )
+
+
+def _bodies_of(db: Session, session: StudySession) -> frozenset[str]:
+    """Return the hashes of all models that the session's avatar can wear, at any time.
+
+    They are the body of the avatar's configuration and those that the study's conditions name, so
+    neither an answer nor a request tells which body comes next.
+    """
+    if session.avatar_configuration_hash is None:
+        return frozenset()
+    configured = configuration_by_hash(db, session.avatar_configuration_hash).humanoid
+    named = named_bodies(db)
+    prescribed = (named.get(name) for name in protocol_of_session(db, session).bodies)
+    return frozenset(one for one in (configured, *prescribed) if one is not None)
 
 
 def _with_body(
@@ -173,15 +239,25 @@ def _built(
     configuration: Configuration,
     figure: Figure | None,
     stature_m: float,
-    segments_m: Mapping[str, float],
+    measured_m: Mapping[str, float],
     tasks: Tasks,
     longest_delay_s: float,
 ) -> AvatarModel:
+    for one in missing_part_problems(configuration):
+        raise Conflict(
+            f"the avatar of this session cannot be used: {one.message}",
+            value=one.value,
+            valid=one.valid,
+            remedy="Save a version of it in which these parts have all their axes, name that in a "
+            "new version of the study, and start the session with this one.",
+        )
     try:
+        # A body with a model of its own uses no measured lengths, but they must be somebody's.
+        proportions(stature_m, measured_m)
         return avatar_model(
             configuration,
             stature_m,
-            segments_m=segments_m,
+            segments_m=measured_m if figure is None else {},
             figure=figure,
             scene=scene_of(tuple(tasks.layouts().values())),
             longest_delay_s=longest_delay_s,
@@ -189,6 +265,6 @@ def _built(
     except BodyError as error:
         raise InvalidInput(
             f"there is no such body: {error}",
-            value={"stature_m": stature_m, **segments_m},
+            value={"stature_m": stature_m, **measured_m},
             remedy="Measure the participant again, or leave the lengths of segments out.",
         ) from None

@@ -6,6 +6,7 @@ anything being dropped.
 """
 
 import asyncio
+import enum
 import logging
 from collections import deque
 from collections.abc import Callable, Iterable
@@ -15,7 +16,7 @@ from typing import TypeVar
 from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
-from app.errors import InvalidInput, Withdrawn
+from app.errors import InvalidInput, TakenOver, Withdrawn
 from app.features.record.headset.goals import newest_goals
 from app.features.record.headset.monitor import HeadsetMonitor
 from app.features.record.headset.service import headset_state, welcome
@@ -63,6 +64,17 @@ ECHO_NS = 1_000_000
 """Tolerance of an echoed time: a client that stores numbers as doubles rounds nanoseconds."""
 Argument = TypeVar("Argument")
 CLOSE_REFUSED = 4400
+TAKEN_OVER = "taken_over"
+"""The topic on which the newest connection of a session makes itself known to the older ones."""
+
+
+class StateDue(enum.Enum):
+    """What the outbox holds in the place of a state, which is read when its turn comes."""
+
+    NEWS = "news"
+    """Something about the session has changed."""
+    BEFORE_ACK = "before_ack"
+    """An acknowledgement follows; the state is sent if the client does not have it yet."""
 
 
 @dataclass(eq=False)
@@ -77,9 +89,10 @@ class HeadsetConnection:
     epoch: int = 0
     monitor: HeadsetMonitor = field(init=False)
     _loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.get_running_loop)
-    _outbox: asyncio.Queue[Message] = field(default_factory=asyncio.Queue)
+    _outbox: asyncio.Queue[Message | StateDue] = field(default_factory=asyncio.Queue)
     _in_flight: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_IN_FLIGHT))
     _abilities: frozenset[str] = frozenset()
+    _state_sent: HeadsetState | None = None
     _unanswered: int = 0
     _answers: deque[ProbeAnswer] = field(default_factory=lambda: deque(maxlen=MAX_PROBE_ANSWERS))
 
@@ -97,7 +110,9 @@ class HeadsetConnection:
     async def run(self) -> None:
         """Serve the socket until it closes."""
         await self._handshake()
-        with self.context.hub.subscribe(self.session_id) as subscription:
+        with self.context.hub.subscribe(self.session_id, TAKEN_OVER) as subscription:
+            # One body is worn by one page: two would record the same phase side by side.
+            self.context.hub.publish(self.session_id, TAKEN_OVER, self)
             self.context.hub.headset_joined(self.session_id, abilities=self._abilities)
             self.context.hub.publish(self.session_id, "session")
             tasks = [
@@ -126,10 +141,8 @@ class HeadsetConnection:
 
     async def _handshake(self) -> None:
         """Receive the hello message and answer it with a welcome."""
-        received = await asyncio.wait_for(self.socket.receive(), HELLO_DEADLINE_S)
-        if received["type"] == "websocket.disconnect":
-            raise WebSocketDisconnect(received.get("code", 1005))
-        text = received.get("text") or ""
+        first = await asyncio.wait_for(next_message(self.socket), HELLO_DEADLINE_S)
+        text = first if isinstance(first, str) else ""
         hello = parse_message(text)
         if not isinstance(hello, Hello) or hello.protocol != PROTOCOL_VERSION:
             raise InvalidInput(
@@ -144,6 +157,7 @@ class HeadsetConnection:
         self.monitor = HeadsetMonitor(
             self.context, self.session_id, self._submit, answer, live, goals
         )
+        self._state_sent = answer.state
         await self._send(answer)
 
     def _welcome(self, hello: Hello) -> tuple[Welcome, LiveTelemetry, GoalsReport | None]:
@@ -159,14 +173,11 @@ class HeadsetConnection:
 
     async def _read(self) -> None:
         while True:
-            received = await self.socket.receive()
-            if received["type"] == "websocket.disconnect":
-                raise WebSocketDisconnect(received.get("code", 1005))
-            message = received.get("bytes")
-            if message is not None:
+            message = await next_message(self.socket)
+            if isinstance(message, bytes):
                 await self._handle_batch(message)
             else:
-                await self._handle_text(received.get("text") or "")
+                await self._handle_text(message)
 
     async def _handle_batch(self, message: bytes) -> None:
         batch = decode_batch(message)
@@ -220,6 +231,10 @@ class HeadsetConnection:
             self._in_flight.release()
         self._unanswered = max(0, self._unanswered - outcome.messages)
         self.monitor.delivered(outcome, waiting=self._unanswered > 0)
+        if outcome.changed_state:
+            # The state that includes a report goes before the report's acknowledgement: a client
+            # whose reports are all acknowledged may act on the state that it has.
+            self._outbox.put_nowait(StateDue.BEFORE_ACK)
         if outcome.positions:
             self._outbox.put_nowait(Ack(positions=tuple(outcome.positions.values())))
         for notice in outcome.notices:
@@ -228,24 +243,47 @@ class HeadsetConnection:
     async def _send_outbox(self) -> None:
         while True:
             message = await self._outbox.get()
+            if isinstance(message, StateDue):
+                await self._send_state(message)
+                continue
             await self._send(message)
             if isinstance(message, Failure):
                 await self.socket.close(CLOSE_REFUSED)
                 return
 
     async def _push_state(self, subscription: Subscription) -> None:
-        """Send the session's state on every change; close when the pairing was revoked."""
+        """Have the session's state sent on every change.
+
+        Raises NotSignedIn when the pairing was revoked, and TakenOver when a newer connection
+        opened.
+        """
         # Staggered, so that connections opened together do not query the database simultaneously
         # for ever.
         pairing_checked_s = 10.0 + int(self.session_id[:4], 16) / 0x2000
         while True:
             news = await subscription.next(timeout_s=pairing_checked_s)
+            if news.get(TAKEN_OVER, self) is not self:
+                await asyncio.to_thread(self._require_pairing)
+                raise TakenOver(
+                    "another page of this headset is connected to the session now",
+                    remedy="Continue there, and close this page; to continue here, reload it.",
+                )
             if not news:
                 await asyncio.to_thread(self._require_pairing)
             if "session" in news:
-                state = await asyncio.to_thread(self._state)
-                self.monitor.update_state(state)
-                await self._send(state)
+                self._outbox.put_nowait(StateDue.NEWS)
+
+    async def _send_state(self, due: StateDue) -> None:
+        """Send the newest state.
+
+        Only the outbox calls it: so a client never gets an older state after a newer one.
+        """
+        state = await asyncio.to_thread(self._state)
+        if due is StateDue.BEFORE_ACK and state == self._state_sent:
+            return
+        self.monitor.update_state(state)
+        self._state_sent = state
+        await self._send(state)
 
     def _state(self) -> HeadsetState:
         with self.context.database.reading() as db:
@@ -275,6 +313,15 @@ class HeadsetConnection:
             self._loop.call_soon_threadsafe(function, argument)
         except RuntimeError:  # the event loop has closed, so there is no connection left
             return
+
+
+async def next_message(socket: WebSocket) -> bytes | str:
+    """Return the next message; raise WebSocketDisconnect if the headset has closed the socket."""
+    received = await socket.receive()
+    if received["type"] == "websocket.disconnect":
+        raise WebSocketDisconnect(received.get("code", 1005))
+    message: bytes | None = received.get("bytes")
+    return (received.get("text") or "") if message is None else message
 
 
 def can_be_true(reading: Probed, answers: Iterable[ProbeAnswer]) -> bool:

@@ -1,12 +1,13 @@
-"""How the headset knows the goals of the body now, and whether it measures the feet."""
+"""How the headset knows the goals of the body now, and how far a calibration is."""
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.models import ClientReport
 from app.platform.hub import Hub
-from app.wire import Goal, GoalsReport, GoalState
+from app.wire import CalibrationStepReport, Goal, GoalsReport, GoalState
 
+_STEP = "calibration_step"
 FEET: tuple[Goal, Goal] = ("LeftLowerLeg", "RightLowerLeg")
 """The goals on which contacts of the feet depend."""
 
@@ -39,3 +40,22 @@ def feet_tracked(db: Session, hub: Hub, session_id: str) -> bool | None:
         return None
     goals = newest_goals(db, session_id)
     return None if goals is None else state_of_feet(goals) == "tracked"
+
+
+def calibration_underway(db: Session, hub: Hub, session_id: str) -> CalibrationStepReport | None:
+    """Return the step of the calibration that a connected headset is making; None if it is not."""
+    if not hub.headset_can(session_id, "calibrates"):
+        return None
+    newest = db.execute(
+        select(ClientReport.type, ClientReport.payload)
+        .where(
+            ClientReport.session_id == session_id,
+            ClientReport.type.in_(("calibration", _STEP)),
+            ClientReport.accepted,
+        )
+        .order_by(ClientReport.epoch.desc(), ClientReport.seq.desc())
+        .limit(1)
+    ).first()
+    if newest is None or newest.type != _STEP:
+        return None
+    return CalibrationStepReport.model_validate(newest.payload)

@@ -10,12 +10,15 @@ from app.features.record.alarms import open_rows
 from app.features.record.questionnaires import due_form
 from app.features.record.sessions import SessionState, protocol_of_session
 from app.models import StudySession
-from app.protocol import FORM_KINDS, Step, StudyProtocol
+from app.protocol import FORM_KINDS, TIMED_KINDS, Step, StudyProtocol
 from app.texts import chosen
 from app.wire import PanelOrder
 
 _CALLS = frozenset({"help_asked", "question_asked", "stop_asked"})
 """Alarms that say that the participant has called and nobody has come yet."""
+_DURING_PHASES = ("freeze", "walk_back")
+"""Texts of a study that are shown while a phase is under way."""
+
 _ON_THE_TABLET = ("consent", "debrief")
 
 
@@ -38,6 +41,12 @@ def panel_order(
         headset_off=_is_off(state, step),
         held=is_held,
         called=any(row.code in _CALLS for row in open_rows(db, session.id)),
+        limb=step.limb if step is not None and step.kind in TIMED_KINDS else None,
+        screen_texts={
+            key: chosen(protocol.texts[key], language)
+            for key in _DURING_PHASES
+            if key in protocol.texts
+        },
     )
 
 

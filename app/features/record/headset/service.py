@@ -28,6 +28,7 @@ from app.features.record.sessions import (
     state_of,
 )
 from app.features.record.telemetry import (
+    abilities_of,
     assign_epoch,
     certain_active_s,
     is_assigned_epoch,
@@ -80,10 +81,11 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
     if hello.epoch is not None and not is_assigned_epoch(db, session_id, hello.epoch):
         message = f"a headset claims epoch {hello.epoch}, which the server did not assign"
         record_impossible(db, session_id, message, now)
+    _record_other_abilities(db, session_id, hello, now)
     return Welcome(
         protocol=PROTOCOL_VERSION,
         session_id=session.id,
-        epoch=hello.epoch or assign_epoch(db, session_id, now, fingers=hello.fingers),
+        epoch=hello.epoch or assign_epoch(db, session_id, now, abilities=hello.abilities),
         time_scale=session.time_scale,
         language=session.language,
         avatar=session.avatar,
@@ -96,6 +98,23 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
         bodies=protocol.bodies,
         appearance=protocol.appearance.model_dump(mode="json"),
     )
+
+
+def _record_other_abilities(db: Session, session_id: str, hello: Hello, now: datetime) -> None:
+    """Record if a run that reconnects can do something else than it said before.
+
+    What a run records follows from what it can do, so this cannot be the same run.
+    """
+    before = None if hello.epoch is None else abilities_of(db, session_id).get(hello.epoch)
+    if before is None or before == hello.abilities:
+        return
+    lost = ", ".join(sorted(before - hello.abilities)) or "nothing"
+    gained = ", ".join(sorted(hello.abilities - before)) or "nothing"
+    message = (
+        f"the headset of epoch {hello.epoch} came back with other abilities: without {lost}, with"
+        f" {gained} that it did not have"
+    )
+    record_impossible(db, session_id, message, now)
 
 
 def record_impossible(db: Session, session_id: str, message: str, now: datetime) -> None:

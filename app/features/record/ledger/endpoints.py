@@ -4,18 +4,15 @@ from collections.abc import Sequence
 from typing import TypedDict
 
 from fastapi import APIRouter
-from sqlalchemy.orm import Session
 
 from app.features.design.studies import newest_version, protocol_of, study_by_key
 from app.features.record.ledger.schemas import AttemptView, Kind, LedgerView, SequenceRow, SlotRow
-from app.features.record.ledger.service import SlotView, end_reason, ledger_of, planned_slots
-from app.models import SlotAttempt
+from app.features.record.ledger.service import SlotView, ledger_of, planned_slots
 from app.platform.access import hidden_sessions, is_blind
 from app.platform.dependencies import Reading, SignedIn
 from app.protocol import StudyProtocol
 
 router = APIRouter(tags=["participants"])
-ENDED_EARLY = ("aborted", "withdrawn")
 
 
 @router.get("/studies/{key}/ledger")
@@ -28,7 +25,8 @@ def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -
     version = newest_version(db, study)
     protocol = protocol_of(version)
     slots = ledger_of(db, version, kind)
-    rows = [_row(db, view, protocol) for view in slots] or [
+    orders = {order: _order(protocol, order) for order in {tuple(one.sequence) for one in slots}}
+    rows = [_row(view, orders[tuple(view.sequence)]) for view in slots] or [
         SlotRow(
             index=index,
             block=index // max(1, len(planned_slots(protocol)) // protocol.orders.replicates),
@@ -74,30 +72,26 @@ def _order(protocol: StudyProtocol, order: Sequence[str]) -> _Order:
     )
 
 
-def _row(db: Session, view: SlotView, protocol: StudyProtocol) -> SlotRow:
+def _row(view: SlotView, order: _Order) -> SlotRow:
     return SlotRow(
-        index=view.slot.position,
-        block=view.slot.block,
-        replicate=view.slot.replicate,
-        **_order(protocol, view.slot.sequence),
+        index=view.position,
+        block=view.block,
+        replicate=view.replicate,
+        **order,
         state=view.state,
         attempts=[
             AttemptView(
-                session_id=one.attempt.session_id,
+                session_id=one.session_id,
                 participant_code=one.code,
-                outcome=one.attempt.outcome,
-                opened_at=one.attempt.opened_at,
-                closed_at=one.attempt.closed_at,
-                reason=_reason(db, one.attempt),
+                outcome=one.outcome,
+                opened_at=one.opened_at,
+                closed_at=one.closed_at,
+                reason=one.reason,
                 shortfalls=list(one.shortfalls),
             )
             for one in view.attempts
         ],
     )
-
-
-def _reason(db: Session, attempt: SlotAttempt) -> str | None:
-    return end_reason(db, attempt.session_id) if attempt.outcome in ENDED_EARLY else None
 
 
 def _sequences(rows: Sequence[SlotRow]) -> list[SequenceRow]:

@@ -11,6 +11,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from typing import NamedTuple
 
 from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
@@ -34,28 +35,39 @@ from app.protocol import StudyProtocol, ledger_block
 OCCUPYING = ("open", "completed")
 ENDED = ("completed", "invalid")
 """Outcomes of completed sessions: valid, and not valid."""
+ENDED_EARLY = ("aborted", "withdrawn")
 
 
-@dataclass(frozen=True)
-class SlotAttemptDetails:
-    """An attempt with its participant's code, and the reasons why its session is not valid."""
+class SlotAttemptDetails(NamedTuple):
+    """An attempt with its participant's code.
 
-    attempt: SlotAttempt
+    `reason`: why its session was aborted or withdrawn; None if it was not, or was erased.
+    `shortfalls`: why its session is not valid.
+    """
+
+    session_id: str
     code: str
+    outcome: str
+    opened_at: datetime
+    closed_at: datetime | None
+    reason: str | None
     shortfalls: tuple[Shortfall, ...]
 
 
 @dataclass(frozen=True)
 class SlotView:
-    """A slot with all attempts on it, oldest first."""
+    """A slot with its order (condition keys) and all attempts on it, oldest first."""
 
-    slot: LedgerSlot
-    attempts: tuple[SlotAttemptDetails, ...]
+    position: int
+    block: int
+    replicate: int
+    sequence: Sequence[str]
+    attempts: Sequence[SlotAttemptDetails]
 
     @property
     def state(self) -> str:
         """Return the state of the slot: free, open or completed."""
-        outcomes = {one.attempt.outcome for one in self.attempts}
+        outcomes = {one.outcome for one in self.attempts}
         if "completed" in outcomes:
             return "completed"
         return "open" if "open" in outcomes else "free"
@@ -214,22 +226,59 @@ def ledger_of(db: Session, version: StudyVersion, kind: str) -> tuple[SlotView, 
     )
     if ledger is None:
         return ()
-    slots = db.scalars(
-        select(LedgerSlot).where(LedgerSlot.ledger_id == ledger.id).order_by(LedgerSlot.position)
+    # Only the columns needed: a thousand complete rows of each table would be most of the work.
+    slots = db.execute(
+        select(
+            LedgerSlot.id,
+            LedgerSlot.position,
+            LedgerSlot.block,
+            LedgerSlot.replicate,
+            LedgerSlot.sequence,
+        )
+        .where(LedgerSlot.ledger_id == ledger.id)
+        .order_by(LedgerSlot.position)
     ).all()
+    attempts = _attempts(db, ledger.id)
+    return tuple(
+        SlotView(
+            slot.position, slot.block, slot.replicate, slot.sequence, attempts.get(slot.id, ())
+        )
+        for slot in slots
+    )
+
+
+def _attempts(db: Session, ledger_id: str) -> dict[str, list[SlotAttemptDetails]]:
+    """Return the attempts on the slots of a ledger by slot, oldest first."""
     rows = db.execute(
-        select(SlotAttempt, Participant.code, StudySession.shortfalls)
+        select(
+            SlotAttempt.slot_id,
+            SlotAttempt.session_id,
+            Participant.code,
+            SlotAttempt.outcome,
+            SlotAttempt.opened_at,
+            SlotAttempt.closed_at,
+            StudySession.shortfalls,
+        )
         .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
         .join(StudySession, StudySession.id == SlotAttempt.session_id)
         .join(Participant, Participant.id == StudySession.participant_id)
-        .where(LedgerSlot.ledger_id == ledger.id)
+        .where(LedgerSlot.ledger_id == ledger_id)
         .order_by(SlotAttempt.opened_at)
     )
+    reasons = _end_reasons(db, ledger_id)
     attempts: dict[str, list[SlotAttemptDetails]] = {}
-    for attempt, code, stored in rows:
-        one = SlotAttemptDetails(attempt, code, shortfalls_of(stored))
-        attempts.setdefault(attempt.slot_id, []).append(one)
-    return tuple(SlotView(slot, tuple(attempts.get(slot.id, ()))) for slot in slots)
+    for slot_id, session_id, code, outcome, opened_at, closed_at, stored in rows:
+        one = SlotAttemptDetails(
+            session_id,
+            code,
+            outcome,
+            opened_at,
+            closed_at,
+            reasons.get(session_id),
+            shortfalls_of(stored) if stored else (),
+        )
+        attempts.setdefault(slot_id, []).append(one)
+    return attempts
 
 
 def planned_slots(protocol: StudyProtocol) -> Sequence[tuple[tuple[str, ...], int]]:
@@ -239,13 +288,25 @@ def planned_slots(protocol: StudyProtocol) -> Sequence[tuple[tuple[str, ...], in
     ]
 
 
-def end_reason(db: Session, session_id: str) -> str | None:
-    """Return the lab's reason for aborting or withdrawing a session; None once it was erased."""
-    ended = db.scalar(
-        select(SessionEvent).where(
-            SessionEvent.session_id == session_id, SessionEvent.type == "session_ended"
-        )
+def _end_reasons(db: Session, ledger_id: str) -> dict[str, str]:
+    """Return the lab's reason for each aborted or withdrawn session of a ledger, unless erased."""
+    of_ended = (
+        select(SlotAttempt.session_id)
+        .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
+        .where(LedgerSlot.ledger_id == ledger_id, SlotAttempt.outcome.in_(ENDED_EARLY))
     )
-    content_id = None if ended is None else json.loads(ended.payload)["content_id"]
-    content = db.get(SessionContent, content_id) if content_id else None
-    return None if content is None or content.body is None else str(json.loads(content.body))
+    ends = select(SessionEvent.session_id, SessionEvent.payload).where(
+        SessionEvent.session_id.in_(of_ended), SessionEvent.type == "session_ended"
+    )
+    named = {session_id: json.loads(text)["content_id"] for session_id, text in db.execute(ends)}
+    if not named:
+        return {}
+    contents = select(SessionContent.id, SessionContent.body).where(
+        SessionContent.session_id.in_(of_ended), SessionContent.kind == "reason"
+    )
+    bodies = {id_: body for id_, body in db.execute(contents) if body is not None}
+    return {
+        session_id: str(json.loads(bodies[content_id]))
+        for session_id, content_id in named.items()
+        if content_id in bodies
+    }

@@ -1,15 +1,24 @@
 """The data that a console needs to draw poses: body, boxes, and whether the reader is blinded."""
 
+from collections.abc import Mapping
+from contextlib import suppress
 from typing import Literal
 
 from pydantic import BaseModel
 from sqlalchemy.orm import Session
 
 from app.features.record.headset import Touch, headset_state, participant_info, worn_humanoid
-from app.features.record.sessions import plan_of, protocol_of_session
+from app.features.record.sessions import newest_calibration, plan_of, protocol_of_session
+from app.models import StudySession
 from app.platform.access import Caller, is_blind, session_by_id
 from app.protocol import StudyProtocol
-from app.science.skeleton import JOINT_NAMES, PARENTS, SkeletonError, build_skeleton
+from app.science.skeleton import (
+    JOINT_NAMES,
+    PARENTS,
+    Skeleton,
+    SkeletonError,
+    build_skeleton,
+)
 from app.science.tasks import SurfaceKind
 
 DEFAULT_STATURE_M = 1.72
@@ -84,18 +93,36 @@ def setup_of(db: Session, caller: Caller, session_id: str) -> Setup:
         stature_known=stature_m is not None,
         joints=JOINT_NAMES,
         parents=PARENTS,
-        offsets_m=_offsets_m(stature_m or DEFAULT_STATURE_M),
+        offsets_m=_offsets_m(stature_m or DEFAULT_STATURE_M, _measured_m(db, session)),
         surfaces=_surfaces(protocol, limb),
         body=None if humanoid is None else WornBody(hash=humanoid),
     )
 
 
-def _offsets_m(stature_m: float) -> tuple[Vector, ...]:
-    try:
-        offsets_m = build_skeleton(stature_m).offsets_m
-    except SkeletonError:
-        offsets_m = build_skeleton(DEFAULT_STATURE_M).offsets_m
+def _measured_m(db: Session, session: StudySession) -> Mapping[str, float]:
+    """Return the measured lengths of a plain body; a body with a model keeps its own proportions.
+
+    The configuration decides, not the condition: what a blinded reader sees must not tell which
+    body is worn.
+    """
+    calibration = newest_calibration(db, session)
+    if calibration is None or worn_humanoid(db, session, None) is not None:
+        return {}
+    measured: Mapping[str, float] = calibration.report.get("segments_m", {})
+    return measured
+
+
+def _offsets_m(stature_m: float, segments_m: Mapping[str, float]) -> tuple[Vector, ...]:
+    offsets_m = _skeleton(stature_m, segments_m).offsets_m
     return tuple((float(x), float(y), float(z)) for x, y, z in offsets_m)
+
+
+def _skeleton(stature_m: float, segments_m: Mapping[str, float]) -> Skeleton:
+    """Return the skeleton that is drawn, without what no skeleton has: arms first, then stature."""
+    for measured_m in (segments_m, {}):
+        with suppress(SkeletonError):
+            return build_skeleton(stature_m, measured_m)
+    return build_skeleton(DEFAULT_STATURE_M)
 
 
 def _surfaces(protocol: StudyProtocol, limb: Limb) -> tuple[SurfaceView, ...]:

@@ -3,7 +3,9 @@
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+
+from app.platform.client_time import ClientTime
 
 Whole = Annotated[int, Field(ge=-(2**53), le=2**53)]
 ItemKey = Annotated[str, Field(max_length=80)]
@@ -20,6 +22,10 @@ class Administration(BaseModel):
     seed: int
     language: str
     languages: list[str]
+
+
+AnsweredAfter = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+"""Seconds from the opening of a form."""
 
 
 class ItemTrace(BaseModel):
@@ -51,8 +57,8 @@ class SubmissionRequest(BaseModel):
     shown_order: list[str] = Field(max_length=200)
     seed: int = Field(ge=0, lt=2**63)
     language: str = Field(max_length=8)
-    started_at_utc: AwareDatetime | None = None
-    timings: dict[str, FiniteFloat] = Field(default_factory=dict, max_length=200)
+    started_at_utc: ClientTime | None = None
+    timings: dict[str, AnsweredAfter] = Field(default_factory=dict, max_length=200)
     item_traces: dict[ItemKey, ItemTrace] | None = Field(default=None, max_length=200)
 
 

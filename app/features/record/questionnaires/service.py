@@ -144,7 +144,7 @@ def submit(
             remedy="The answers are still on this device; tell the experimenter.",
         )
     instrument = due.used.instrument
-    check_answers(instrument, request, allow_missing=mode == "operator")
+    check_answers(instrument, request, mode=mode)
     id_, salt, now = new_id(), secrets.token_hex(32), context.clock.utc_now()
     _store(
         db,
@@ -231,17 +231,22 @@ def _score_rows(id_: str, instrument: Instrument, answers: Mapping[str, AnswerVa
     ]
 
 
-def check_answers(
-    instrument: Instrument, request: SubmissionRequest, *, allow_missing: bool
-) -> None:
+def check_answers(instrument: Instrument, request: SubmissionRequest, *, mode: str) -> None:
     """Raise InvalidInput with every invalid answer, or for a wrong item order or language.
 
-    `allow_missing`: required answers may be left out.
+    `mode`: where it was answered. The experimenter may leave out required answers. In a headset
+    nobody can type: a text is said aloud, and the experimenter enters it as a correction.
     """
+
+    def may_be_missing(key: str) -> bool:
+        item = instrument.by_key.get(key)
+        is_spoken = mode == "headset" and item is not None and item.type == "text"
+        return mode == "operator" or is_spoken
+
     problems = [
         problem
         for problem in validate_answers(instrument, request.answers)
-        if not (allow_missing and problem.value is None)
+        if not (problem.value is None and may_be_missing(problem.item))
     ]
     if problems:
         raise InvalidInput(

@@ -12,9 +12,11 @@ router = APIRouter(tags=["receipts"])
 
 @router.get("/sessions/{session_id}/receipt")
 def get_receipt(session_id: str, db: Reading, caller: SignedIn) -> SessionReceipt:
-    """Compute the receipt of a session from its record; blinded operators see no latencies."""
-    receipt = receipt_of(db, session_id)
+    """Compute the receipt of a session from its record.
+
+    Blinded readers see neither latencies nor hashes and flagged counts of the avatar's frames, and
+    while a phase runs no stream of reports.
+    """
     session = session_by_id(db, session_id)
-    if is_blind(db, caller, protocol_of_session(db, session), session):
-        return receipt.without_latencies()
-    return receipt
+    is_hidden = is_blind(db, caller, protocol_of_session(db, session), session)
+    return receipt_of(db, session_id, blinded=is_hidden)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.models import Phase, PhaseLatency
+from app.models import ClientReport, Phase, PhaseLatency
 
 MS_PER_S = 1000.0
 
@@ -15,7 +15,9 @@ class LatencyReceipt:
     """The achieved latency of one phase with its 95 % interval.
 
     It is null if it could not be determined; `reason` then says why. `off`: it deviates by more
-    than 10 ms and more than one frame.
+    than 10 ms and more than one frame. `headset_added_ms`: what the headset's own computing added,
+    as it reported itself, and how much of that it took off the set latency
+    (`headset_compensated_ms`), which it cannot at 0 ms; null if it reported nothing.
     """
 
     phase_id: int
@@ -28,6 +30,8 @@ class LatencyReceipt:
     movement_s: float
     off: bool
     reason: str | None
+    headset_added_ms: float | None = None
+    headset_compensated_ms: float | None = None
 
 
 def latency_receipts(db: Session, session_id: str) -> tuple[LatencyReceipt, ...]:
@@ -42,10 +46,33 @@ def latency_receipts(db: Session, session_id: str) -> tuple[LatencyReceipt, ...]
         .where(Phase.session_id == session_id)
         .order_by(Phase.phase_id)
     )
-    return tuple(_receipt(phase, latency) for phase, latency in rows)
+    added_ms = _added_ms(db, session_id)
+    return tuple(_receipt(phase, latency, added_ms.get(phase.phase_id)) for phase, latency in rows)
 
 
-def _receipt(phase: Phase, latency: PhaseLatency) -> LatencyReceipt:
+def _added_ms(db: Session, session_id: str) -> dict[int, tuple[float, float]]:
+    """Return what the headset added and compensated, by phase; the report that added the most.
+
+    A refused report states what cannot be, so only accepted ones count.
+    """
+    payloads = db.scalars(
+        select(ClientReport.payload).where(
+            ClientReport.session_id == session_id,
+            ClientReport.type == "added_latency",
+            ClientReport.accepted,
+        )
+    )
+    found: dict[int, tuple[float, float]] = {}
+    for payload in payloads:
+        added = (MS_PER_S * payload["added_s"], MS_PER_S * payload["compensated_s"])
+        found[payload["phase_id"]] = max(found.get(payload["phase_id"], added), added)
+    return found
+
+
+def _receipt(
+    phase: Phase, latency: PhaseLatency, added: tuple[float, float] | None
+) -> LatencyReceipt:
+    added_ms, compensated_ms = added or (None, None)
     return LatencyReceipt(
         phase_id=phase.phase_id,
         kind=phase.kind,
@@ -57,6 +84,8 @@ def _receipt(phase: Phase, latency: PhaseLatency) -> LatencyReceipt:
         movement_s=latency.movement_s,
         off=latency.flagged,
         reason=latency.reason,
+        headset_added_ms=added_ms,
+        headset_compensated_ms=compensated_ms,
     )
 
 

@@ -1,8 +1,8 @@
 """Compute the receipt of a session from its record whenever it is requested."""
 
 import json
-from dataclasses import asdict, dataclass, replace
-from typing import Any, Self
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -13,10 +13,11 @@ from app.features.record.doubts import Doubt, doubts_of
 from app.features.record.receipts.completions import CompletionReceipt, completion_receipts
 from app.features.record.receipts.latencies import LatencyReceipt, latency_receipts
 from app.features.record.receipts.streams import StreamReceipt, stream_receipts
-from app.features.record.sessions import ChainCheck, events_of, verify_chain
-from app.models import Phase, Study, TelemetryBatch, TelemetryChunk, TelemetryStream
+from app.features.record.sessions import ChainCheck, events_of, state_of, verify_chain
+from app.features.record.telemetry import abilities_of
+from app.models import ClientReport, Phase, Study, TelemetryBatch, TelemetryChunk, TelemetryStream
 from app.platform.access import session_by_id
-from app.wire import BODY_STREAMS, FINGER_STREAMS, StreamName
+from app.wire import BODY_STREAMS, FINGER_STREAMS, REPORT_STREAM, StreamName
 
 _WHAT = {
     StreamName.TARGET: "target body",
@@ -70,18 +71,22 @@ class SessionReceipt:
         """Return the receipt as a dictionary for JSON output."""
         return asdict(self)
 
-    def without_latencies(self) -> Self:
-        """Return the receipt without latencies, for readers who must not know the condition."""
-        return replace(self, achieved_latency=())
 
-
-def receipt_of(db: Session, session_id: str) -> SessionReceipt:
+def receipt_of(db: Session, session_id: str, *, blinded: bool = False) -> SessionReceipt:
     """Count, verify and derive everything from the record; raises NotFound for an unknown session.
+
+    `blinded`: as readers may see it who must not know the condition. It has no latencies, neither
+    hashes of the avatar's frames nor how many of them were flagged, and while a phase runs no
+    stream of reports: a report follows every contact, which is late by the latency.
 
     This takes about a second per ten minutes of session.
     """
     session = session_by_id(db, session_id)
     streams = stream_receipts(db, session_id)
+    if blinded:
+        runs = state_of(session).phase is not None
+        shown = (one for one in streams if not (runs and one.stream == REPORT_STREAM))
+        streams = tuple(one.blinded() for one in shown)
     chain = verify_chain(events_of(db, session_id), version=session.version)
     completions = completion_receipts(db, session)
     doubts = doubts_of(db, session_id)
@@ -105,7 +110,7 @@ def receipt_of(db: Session, session_id: str) -> SessionReceipt:
         chain=chain,
         completions=completions,
         doubts=doubts,
-        achieved_latency=latency_receipts(db, session_id),
+        achieved_latency=() if blinded else latency_receipts(db, session_id),
         avatar_changes=_avatar_changes(db, session_id),
     )
 
@@ -163,6 +168,7 @@ def _phase_problems(db: Session, session_id: str) -> list[str]:
         .order_by(Phase.phase_id)
     ).all()
     announced = _announced_fingers(db, session_id)
+    silent = _silent_about_goals(db, session_id)
     problems = []
     for phase in phases:
         found = _streams_of(db, phase)
@@ -178,7 +184,27 @@ def _phase_problems(db: Session, session_id: str) -> list[str]:
             for stream in FINGER_STREAMS
             if (stream, epoch) in announced - found
         ]
+        problems += [
+            f"phase {phase.phase_id}, epoch {epoch}: no report of how the goals of the body are"
+            " known, which the headset announced"
+            for epoch in sorted(epochs & silent)
+        ]
     return problems
+
+
+def _silent_about_goals(db: Session, session_id: str) -> set[int]:
+    """Return the epochs whose headset announced reports of the goals and never made one."""
+    announced = {epoch for epoch, found in abilities_of(db, session_id).items() if "goals" in found}
+    reported = db.scalars(
+        select(ClientReport.epoch)
+        .where(
+            ClientReport.session_id == session_id,
+            ClientReport.type == "goals",
+            ClientReport.accepted,
+        )
+        .distinct()
+    )
+    return announced - set(reported)
 
 
 def _announced_fingers(db: Session, session_id: str) -> set[tuple[str, int]]:
@@ -220,7 +246,7 @@ def receipt_text(receipt: SessionReceipt) -> str:
         f"{'stream':<{wide}}{'epoch':>6}{'sent':>10}{'stored':>10}{'missing':>9}{'flagged':>9}",
         *(
             f"{one.stream:<{wide}}{one.epoch:>6}{one.sent:>10}{one.stored:>10}{one.missing:>9}"
-            f"{one.flagged:>9}"
+            f"{'-' if one.flagged is None else one.flagged:>9}"
             for one in receipt.streams
         ),
         "",

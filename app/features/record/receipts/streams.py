@@ -2,7 +2,8 @@
 
 import hashlib
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from sqlalchemy.orm import Session
 from app.features.record.sessions import canonical
 from app.features.record.telemetry import DamagedChunkError, Frames, decode_piece, iter_pieces
 from app.models import ClientReport, TelemetryStream
-from app.wire import MAX_TIME_S, REPORT_STREAM
+from app.wire import MAX_TIME_S, PARTICIPANT_STREAMS, REPORT_STREAM
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,8 @@ class StreamReceipt:
     they count as missing. `flagged`: frames with values that no summary uses. `backwards`: readable
     frames that are not later than the previous one, or whose time is not a number. `sha256` covers
     every bit of every readable frame in order of seq, so two copies of a record can be compared.
+    Of the avatar's streams, both it and `flagged` are null for readers who must not know the
+    condition (`blinded`).
     """
 
     stream: str
@@ -33,9 +36,21 @@ class StreamReceipt:
     missing: int
     gaps: tuple[tuple[int, int], ...]
     damaged: int
-    flagged: int
+    flagged: int | None
     backwards: int
-    sha256: str
+    sha256: str | None
+
+    def blinded(self) -> Self:
+        """Return the receipt as readers may see it who must not know the condition.
+
+        Of a delayed copy without delay the avatar's frames are the participant's own, bit by bit,
+        so one hash beside the other would tell. How often a body's simulation fails depends on its
+        settings and its latency. The participant's own frames keep both.
+        """
+        if self.stream in PARTICIPANT_STREAMS:
+            return self
+        flagged = self.flagged if self.stream == REPORT_STREAM else None
+        return replace(self, sha256=None, flagged=flagged)
 
 
 @dataclass

@@ -7,14 +7,22 @@ from app.features.record.sessions.avatar_changes import (
     changed_phases,
     changes_from,
 )
+from app.features.record.sessions.avatars import (
+    AVATAR,
+    AVATAR_EVENTS,
+    avatar_of_phase,
+    avatars_of_phase,
+)
 from app.features.record.sessions.calibration import CALIBRATION, Calibration, newest_calibration
 from app.features.record.sessions.closed_sessions import (
+    RUNS,
     closed_sessions,
     erased_session,
     not_erased,
     refusal,
     require_capture,
     require_capture_of,
+    require_running,
 )
 from app.features.record.sessions.consent.schemas import (
     ConsentForm,
@@ -71,15 +79,19 @@ from app.features.record.sessions.service import (
     join,
     judge_again,
     plan_of,
+    plans_of,
     protocol_of_session,
     read_plan,
     state_of,
 )
 
 __all__ = [
+    "AVATAR",
     "AVATAR_CHANGE",
+    "AVATAR_EVENTS",
     "CALIBRATION",
     "MAX_TIME_SCALE",
+    "RUNS",
     "AskQuestion",
     "AskToStop",
     "AvatarInForce",
@@ -116,6 +128,8 @@ __all__ = [
     "allowed_commands",
     "apply_command",
     "avatar_in_force",
+    "avatar_of_phase",
+    "avatars_of_phase",
     "canonical",
     "changed_phases",
     "changes_from",
@@ -135,11 +149,13 @@ __all__ = [
     "newest_calibration",
     "not_erased",
     "plan_of",
+    "plans_of",
     "protocol_of_session",
     "read_plan",
     "refusal",
     "require_capture",
     "require_capture_of",
+    "require_running",
     "state_of",
     "store_content",
     "verify_chain",

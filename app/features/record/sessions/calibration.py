@@ -22,10 +22,17 @@ class Calibration:
     report: Mapping[str, Any]
 
 
-def newest_calibration(db: Session, session: StudySession) -> Calibration | None:
-    """Return the newest calibration; None before the first, and once it was erased."""
+def newest_calibration(
+    db: Session, session: StudySession, *, before: datetime | None = None
+) -> Calibration | None:
+    """Return the newest calibration; None before the first, and once it was erased.
+
+    `before`: only those that had been made then.
+    """
     found: Calibration | None = None
     for row in contents_of(db, session.id, CALIBRATION):
+        if before is not None and row.created_at > before:
+            continue
         body = content_body(row)
         if isinstance(body, dict):
             found = Calibration(row.created_at, body)

@@ -9,7 +9,7 @@ from collections.abc import Collection
 from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import InstrumentedAttribute, Session, aliased
 
-from app.errors import Withdrawn
+from app.errors import NotNow, Withdrawn
 from app.models import Erasure, StudySession
 
 RUNS = ("planned", "active")
@@ -72,6 +72,23 @@ def require_capture_of(db: Session, session: StudySession) -> None:
     erased = session.status not in RUNS and erased_session(db, session.id)
     if session.status == "withdrawn" or erased:
         raise refusal()
+
+
+def require_running(db: Session, session: StudySession, what: str) -> None:
+    """Raise NotNow if the session has ended, so that `what` could no longer be used in it.
+
+    For what a device asks of a session, not for data: those a finished session may still lack.
+    Raises Withdrawn if the session accepts nothing at all.
+    """
+    require_capture_of(db, session)
+    if session.status not in RUNS:
+        raise NotNow(
+            f"the session has ended, so {what}",
+            value=session.status,
+            valid=list(RUNS),
+            remedy="Pair the headset with a session that is running. What its journal still has of "
+            "this one is accepted on the socket.",
+        )
 
 
 def refusal() -> Withdrawn:

@@ -21,6 +21,9 @@ from app.models import SessionEvent
 FIRST_HASH = "0" * 64
 CONDITION_FIELDS = frozenset({"latency_ms", "body"})
 """Fields of events that reveal the session's condition."""
+_OF_A_BODY = frozenset({"avatar_change_reported"})
+"""Events whose content depends on the body that is worn: whether there is any reveals the body."""
+_CONTENT_FIELDS = frozenset({"content_id", "content_hash"})
 _APPENDED = insert(SessionEvent)
 _HASH_AT = select(SessionEvent.hash).where(
     SessionEvent.session_id == bindparam("session_id"), SessionEvent.seq == bindparam("seq")
@@ -100,9 +103,14 @@ def verify_chain(rows: Sequence[SessionEvent], *, version: int | None = None) ->
     return ChainCheck(ok=True, events=len(rows))
 
 
-def without_condition(payload: Mapping[str, Any]) -> dict[str, Any]:
-    """Return an event's payload without the fields that reveal the session's condition."""
-    return {name: value for name, value in payload.items() if name not in CONDITION_FIELDS}
+def without_condition(kind: str, payload: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the payload of an event of this type without what reveals the session's condition.
+
+    A headset reports the angles of the axes that a cast holds, and a body may lack the part. So a
+    reader who must not know the body does not see either whether such a report has any content.
+    """
+    hidden = CONDITION_FIELDS | (_CONTENT_FIELDS if kind in _OF_A_BODY else frozenset())
+    return {name: value for name, value in payload.items() if name not in hidden}
 
 
 def canonical(value: object) -> str:

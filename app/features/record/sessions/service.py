@@ -3,9 +3,10 @@
 import secrets
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
-from functools import lru_cache, reduce
+from functools import lru_cache, partial, reduce
 
-from sqlalchemy import select
+from sqlalchemy import ColumnElement, select
+from sqlalchemy.exc import NoResultFound
 from sqlalchemy.orm import Session
 
 from app.database import referenced_row
@@ -19,6 +20,7 @@ from app.features.design.studies import (
 )
 from app.features.movement.avatar import version_of
 from app.features.record.ledger import find_or_add_participant, open_attempt, slot_of, take_slot
+from app.features.record.sessions.closed_sessions import require_running
 from app.features.record.sessions.engine import (
     Command,
     Refused,
@@ -33,13 +35,23 @@ from app.features.record.sessions.engine.events import SessionEnded
 from app.features.record.sessions.journal import append_events, event_of
 from app.features.record.sessions.projection import project
 from app.features.record.sessions.validity import settle_validity
-from app.models import KINDS, SessionEvent, StudySession, StudyVersion, new_id
+from app.models import (
+    KINDS,
+    LedgerSlot,
+    SessionEvent,
+    SlotAttempt,
+    StudySession,
+    StudyVersion,
+    new_id,
+)
 from app.platform.config_problems import unpacking
 from app.platform.context import AppContext
 from app.platform.immutable_cache import ImmutableCache
 from app.protocol import Step, StudyProtocol, compile_plan, parse_study_json
 
 _plans: ImmutableCache[str, tuple[Step, ...]] = ImmutableCache(1024)
+_orders: ImmutableCache[tuple[str, tuple[str, ...], bool], tuple[Step, ...]] = ImmutableCache(256)
+"""Procedures by study version, order of conditions, and whether limbs are exchanged."""
 
 
 def plan_of(db: Session, session: StudySession) -> tuple[Step, ...]:
@@ -60,6 +72,44 @@ def read_plan(db: Session, session: StudySession) -> tuple[Step, ...]:
     slot = slot_of(db, session)
     texts = version.content_hash, version.canonical_json
     return _compiled(*texts, tuple(slot.sequence), slot.position % 2 == 1)
+
+
+def plans_of(db: Session, chosen: ColumnElement[bool]) -> dict[str, tuple[Step, ...]]:
+    """Return the procedures of all `chosen` sessions by session id, with one query.
+
+    Raises sqlalchemy.exc.NoResultFound if one of them has no slot.
+    """
+    rows = db.execute(
+        select(
+            StudySession.id,
+            StudySession.study_version_id,
+            LedgerSlot.sequence,
+            LedgerSlot.position,
+        )
+        .outerjoin(SlotAttempt, SlotAttempt.session_id == StudySession.id)
+        .outerjoin(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
+        .where(chosen)
+    )
+    # Many sessions share few orders.
+    shared: dict[tuple[str, tuple[str, ...], bool], tuple[Step, ...]] = {}
+    plans = {}
+    for session_id, version_id, sequence, position in rows:
+        if sequence is None:
+            raise NoResultFound(f"session {session_id} has no slot of the ledger")
+        order = (version_id, tuple(sequence), position % 2 == 1)
+        if order not in shared:
+            shared[order] = _orders.get(db, order, partial(_ordered, db, *order))
+        plans[session_id] = shared[order]
+    return plans
+
+
+def _ordered(
+    db: Session,
+    version_id: str,
+    sequence: tuple[str, ...],
+    flip: bool,  # noqa: FBT001 - part of a cache key
+) -> tuple[Step, ...]:
+    return compile_plan(version_content(db, version_id).protocol, sequence, block_limb_flip=flip)
 
 
 @lru_cache(maxsize=256)
@@ -92,12 +142,18 @@ def protocol_of_session(db: Session, session: StudySession) -> StudyProtocol:
 
 
 def choose_language(db: Session, context: AppContext, session: StudySession, language: str) -> None:
-    """Switch a locked session to another language of its study; raise InvalidInput if it is not."""
+    """Switch a locked session to another language of its study; raise InvalidInput if it is not.
+
+    The language of a session that has ended is that in which it was held: raises NotNow.
+    """
     valid = protocol_of_session(db, session).languages
     if language not in valid:
         raise InvalidInput(
             f"the study has no texts in {language!r}", value=language, valid=list(valid)
         )
+    if language == session.language:
+        return
+    require_running(db, session, "nobody reads its texts any more")
     session.language = language
     context.hub.publish_after_commit(db, session.id)
 

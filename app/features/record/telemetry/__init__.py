@@ -13,6 +13,7 @@ from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
 from app.features.record.telemetry.movement import hinges_of
 from app.features.record.telemetry.positions import (
     Outcome,
+    abilities_of,
     assign_epoch,
     certain_active_s,
     is_assigned_epoch,
@@ -20,6 +21,7 @@ from app.features.record.telemetry.positions import (
 )
 from app.features.record.telemetry.recovery import stop_running_clocks
 from app.features.record.telemetry.summaries import Summariser
+from app.features.record.telemetry.trials import NO_SESSION, TrialContent, TrialEnd
 from app.features.record.telemetry.writer import (
     AlarmContent,
     Arrival,
@@ -31,6 +33,7 @@ from app.features.record.telemetry.writer import (
 )
 
 __all__ = [
+    "NO_SESSION",
     "AlarmContent",
     "Arrival",
     "BatchContent",
@@ -44,6 +47,9 @@ __all__ = [
     "ProbeContent",
     "Summariser",
     "TelemetryWriter",
+    "TrialContent",
+    "TrialEnd",
+    "abilities_of",
     "assign_epoch",
     "certain_active_s",
     "concatenate",

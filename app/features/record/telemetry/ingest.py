@@ -13,7 +13,7 @@ from typing import Any, cast
 from sqlalchemy import Table, select
 from sqlalchemy.orm import Session
 
-from app.features.record.alarms import Change, store_change
+from app.features.record.alarms import Change, Condition, store_change
 from app.features.record.doubts import OBSERVED
 from app.features.record.sessions import HeadsetLost, apply_command, protocol_of_session, state_of
 from app.features.record.telemetry.positions import Outcome, Positions, certain_active_s
@@ -64,6 +64,11 @@ class Intake:
         """Collect a row, to be inserted together with the others of its table."""
         self._rows.setdefault(table, []).append(row)
 
+    def gathers(self, table: Table, **key: object) -> bool:
+        """Return whether a row with these values was collected for a table already."""
+        rows = self._rows.get(table, [])
+        return any(key.items() <= row.items() for row in rows)
+
     def fetch_phases(self, session_ids: Iterable[str]) -> None:
         """Read the phases of these sessions once per transaction, as none is prepared in it."""
         missing = sorted(set(session_ids) - self._phases.keys())
@@ -113,11 +118,19 @@ class Intake:
             bad = int(flags.bad[skip:].sum())
             at.stored(header.frame_count - skip)
             at.frames_flagged += bad
+            if header.phase_id not in (0, at.phase_id):
+                self._require_phase(session_id, header.phase_id)
             at.phase_id, at.active_s = header.phase_id, header.active_s
             if bad:
                 outcome.frames_flagged += bad
                 outcome.notices.append(_flag(header, flags, skip))
         outcome.stored_up_to(at)
+
+    def _require_phase(self, session_id: str, phase_id: int) -> None:
+        """Put the session in doubt if it has no such phase; the frames are stored as received."""
+        if not self.has_phase(session_id, phase_id):
+            words = f"frames arrived of phase {phase_id}, which this session does not have"
+            self.store_alarm(session_id, Change("raised", Condition(OBSERVED, words), self.now))
 
     def store_probe(self, session_id: str, epoch: int, probe: Probed) -> None:
         """Store a raw clock probe."""
@@ -187,7 +200,11 @@ def _flag(header: BatchHeader, flags: FrameFlags, skip: int) -> Flag:
     bad = flags.bad[skip:]
     first = int(bad.argmax()) + skip
     broken = bool(flags.non_finite[skip:].any())
-    what = "a value that is not a number" if broken else "a rotation that is not of unit length"
+    what = (
+        "a value that is not a number, or hips that are in no room"
+        if broken
+        else "a rotation that is not of unit length"
+    )
     return Flag(
         code="non_finite" if broken else "non_unit",
         stream=header.stream,

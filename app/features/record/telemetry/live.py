@@ -23,6 +23,12 @@ from app.wire import (
 )
 
 PERIOD_S = 0.2
+COMPLETIONS_EVERY_S = 10.0
+"""How seldom a blinded reader is told the number of completions, in active time.
+
+The completion follows the participant's own movement by the latency. On this beat, the number is
+what the participant's mirror shows, but no moment.
+"""
 
 
 @dataclass
@@ -46,7 +52,10 @@ class LiveTelemetry:
     _counted_until_s: float = float("nan")
     _phase_id: int = 0
     _completions: int = 0
+    _beat: int = -1
+    _completions_on_beat: int = 0
     _side_contacts: int = 0
+    _side_contact_s: float = 0.0
     _red_until_s: dict[str, float] = field(default_factory=dict)
 
     def wear(self, order: PhaseOrder | None) -> None:
@@ -72,11 +81,14 @@ class LiveTelemetry:
             self._count_side(report.body)
 
     def _count_side(self, contact: ContactReport) -> None:
-        """Count a side contact; a side that several parts touch at the same time counts once."""
+        """Count a finished side contact; what several parts touch at the same time counts once."""
         side = side_unit(contact.surface) or contact.surface
-        if contact.begin_active_s > self._red_until_s.get(side, -1.0):
+        red_until_s = self._red_until_s.get(side, -1.0)
+        if contact.begin_active_s > red_until_s:
             self._side_contacts += 1
-        self._red_until_s[side] = max(self._red_until_s.get(side, -1.0), contact.end_active_s)
+        new_s = contact.end_active_s - max(contact.begin_active_s, red_until_s)
+        self._side_contact_s += max(0.0, new_s)
+        self._red_until_s[side] = max(red_until_s, contact.end_active_s)
 
     def flagged(self, frames: int) -> None:
         """Count stored frames that contain invalid values."""
@@ -89,7 +101,8 @@ class LiveTelemetry:
             return  # only the body's frames enter the figures
         if header.phase_id != self._phase_id:
             self._phase_id, self._completions, self._side_contacts = header.phase_id, 0, 0
-            self._red_until_s = {}
+            self._side_contact_s, self._red_until_s = 0.0, {}
+            self._beat, self._completions_on_beat = -1, 0
         self._newest[header.stream] = batch
         if header.stream is StreamName.TARGET:
             self._frames += header.frame_count
@@ -112,6 +125,9 @@ class LiveTelemetry:
         actual = self._newest[StreamName.ACTUAL]
         target = self._newest.get(StreamName.TARGET)
         fps = self._frame_rate(target)
+        beat = int(actual.header.active_s // COMPLETIONS_EVERY_S)
+        if beat != self._beat:
+            self._beat, self._completions_on_beat = beat, self._completions
         errors_deg = {} if target is None else _errors_deg(target, actual, self.worn_hinges)
         return {
             "phase_id": self._phase_id,
@@ -119,7 +135,9 @@ class LiveTelemetry:
             "client_t_s": _number(actual.times_s[-1]),
             "fps": None if fps is None else round(fps, 1),
             "completions": self._completions,
+            "completions_on_beat": self._completions_on_beat,
             "side_contacts": self._side_contacts,
+            "side_contact_s": self._side_contact_s,
             "frames_flagged": self._flagged,
             "joint_error_deg": errors_deg,
         }

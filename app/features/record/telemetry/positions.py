@@ -119,10 +119,13 @@ def positions_of(db: Session, session_id: str) -> tuple[StreamPosition, ...]:
     )
 
 
-def assign_epoch(db: Session, session_id: str, now: datetime, *, fingers: bool = False) -> int:
+def assign_epoch(
+    db: Session, session_id: str, now: datetime, *, abilities: frozenset[str] = frozenset()
+) -> int:
     """Assign the next epoch number; none is assigned twice, even if nothing is sent under it.
 
-    `fingers`: the epoch's streams of fingers exist from now on, even if nothing arrives in them.
+    `abilities`: what the client run says that it can do, which is stored. With `fingers` the
+    epoch's streams of fingers exist from now on, even if nothing arrives in them.
     The session must be locked.
     """
     # A client may have used a number that the server never assigned, up to the maximum.
@@ -132,7 +135,7 @@ def assign_epoch(db: Session, session_id: str, now: datetime, *, fingers: bool =
     epoch = max(taken, default=0) + 1
     if epoch > MAX_EPOCH:
         epoch = next(number for number in count(1) if number not in taken)
-    announced: tuple[str, ...] = FINGER_STREAMS if fingers else ()
+    announced: tuple[str, ...] = FINGER_STREAMS if "fingers" in abilities else ()
     db.add_all(
         TelemetryStream(
             session_id=session_id,
@@ -145,6 +148,7 @@ def assign_epoch(db: Session, session_id: str, now: datetime, *, fingers: bool =
             frames_flagged=0,
             first_at=now,
             last_at=now,
+            abilities=sorted(abilities) if stream == REPORT_STREAM else None,
         )
         for stream in (REPORT_STREAM, *announced)
     )
@@ -155,6 +159,18 @@ def assign_epoch(db: Session, session_id: str, now: datetime, *, fingers: bool =
 def is_assigned_epoch(db: Session, session_id: str, epoch: int) -> bool:
     """Return whether the server assigned this epoch number in the session."""
     return db.get(TelemetryStream, (session_id, REPORT_STREAM, epoch)) is not None
+
+
+def abilities_of(db: Session, session_id: str) -> dict[int, frozenset[str]]:
+    """Return by epoch what its client run said that it can do; only epochs that stored it."""
+    query = select(TelemetryStream.epoch, TelemetryStream.abilities).where(
+        TelemetryStream.session_id == session_id, TelemetryStream.stream == REPORT_STREAM
+    )
+    return {
+        epoch: frozenset(abilities)
+        for epoch, abilities in db.execute(query)
+        if abilities is not None
+    }
 
 
 def certain_active_s(db: Session, session_id: str, phase_id: int) -> float:
@@ -172,7 +188,8 @@ class Outcome:
     """The result of a transaction for one sender, to be sent once the transaction is on disk.
 
     `messages`: how many of its messages were stored; `frames_flagged`: how many of their frames
-    contain invalid values.
+    contain invalid values; `changed_state`: whether a report among them may have changed what the
+    session's state tells a headset.
     """
 
     positions: dict[tuple[str, int], StreamPosition] = field(default_factory=dict)
@@ -180,6 +197,7 @@ class Outcome:
     phases_ended: list[int] = field(default_factory=list)
     messages: int = 0
     frames_flagged: int = 0
+    changed_state: bool = False
 
     def stored_up_to(self, position: Position) -> None:
         """Acknowledge a stream up to its current position."""

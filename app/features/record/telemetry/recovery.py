@@ -7,6 +7,7 @@ from app.features.design.studies import protocol_of
 from app.features.record.alarms import PERSISTENT, clear_all, sessions_with_open_alarms
 from app.features.record.sessions import HeadsetLost, apply_command, state_of
 from app.features.record.telemetry.positions import certain_active_s
+from app.features.record.telemetry.trials import forget_trial
 from app.models import StudySession, StudyVersion
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
@@ -16,9 +17,12 @@ def stop_running_clocks(context: AppContext) -> int:
     """Pause every running phase at its last active time on disk; return how many there were.
 
     Studies with `on_disconnect: continue` are left alone: their headsets continue, using their
-    journals. Open alarms are cleared; persisting problems will raise them again.
+    journals. Open alarms are cleared; persisting problems will raise them again. What was left of
+    headsets' self-tests is deleted.
     """
     _clear_alarms(context)
+    with context.database.writing() as db:
+        forget_trial(db)
     with context.database.reading() as db:
         active = list(db.scalars(select(StudySession.id).where(StudySession.status == "active")))
     paused = 0

@@ -1,6 +1,7 @@
 """Store a headset's reports and act on them; a rejected report is stored with the reason."""
 
-from datetime import datetime
+import math
+from datetime import datetime, timedelta
 from typing import Any, cast
 
 from sqlalchemy import Table, func, select
@@ -8,23 +9,33 @@ from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
 from app.features.record.alarms import Change, Condition, store_change
+from app.features.record.doubts import exceeds_possible
 from app.features.record.sessions import (
     AVATAR_CHANGE,
     CALIBRATION,
     AskToStop,
     CloseStop,
-    ContentRef,
     Materialise,
     Report,
     ReportAvatarChange,
     ReportCalibration,
     apply_command,
+    avatar_in_force,
     state_of,
     store_content,
 )
 from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.positions import Outcome
-from app.models import ClientReport, Completion, Contact, new_id
+from app.models import (
+    AlarmRow,
+    ClientReport,
+    Completion,
+    Contact,
+    Phase,
+    StudySession,
+    TelemetryStream,
+    new_id,
+)
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.wire import (
@@ -32,6 +43,7 @@ from app.wire import (
     AddedLatencyReport,
     AvatarChangeReport,
     CalibrationReport,
+    CalibrationStepReport,
     CallReport,
     CompletionReport,
     ContactReport,
@@ -45,6 +57,13 @@ from app.wire import Report as ReportMessage
 
 REPORTS = cast("Table", ClientReport.__table__)
 CONTACTS = cast("Table", Contact.__table__)
+POSSIBLE_M = {"span_m": (0.3, 3.0), "eye_height_m": (0.3, 2.6)}
+"""What a calibration can have measured of a person, beside the stature, which its type bounds."""
+ROTATION_TOLERANCE = 1e-3
+TAKEN_BACK_AT_MOST, REPEATED_WITHIN = 3, timedelta(minutes=1)
+"""How many calls a participant may take back in a while; the next one stays open."""
+COMPENSATION_MS = 1.0
+"""By how much reported seconds may differ from ordered milliseconds."""
 
 
 def store_report(intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome) -> None:
@@ -93,20 +112,25 @@ def _take(
     try:
         if isinstance(body, ContactReport | CompletionReport | AddedLatencyReport):
             _require_phase(intake, session_id, body.phase_id)
+        if isinstance(body, AddedLatencyReport):
+            _require_ordered(intake, session_id, body)
+        if isinstance(body, GoalsReport):
+            _require_onwards(intake, session_id, message.epoch, body)
         if isinstance(body, ContactReport):
             # By far the most frequent report; it changes no state, so it is inserted with the
             # others.
             values = body.model_dump(exclude={"kind"})
             own = {"id": new_id(), "session_id": session_id, "epoch": message.epoch}
             intake.gather(CONTACTS, {**own, **values})
-        elif isinstance(body, GoalsReport):
-            # It changes no state; pages show it, and the pre-flight check judges it.
+        elif isinstance(body, GoalsReport | CalibrationStepReport):
+            # They change no state; pages show them, and the pre-flight check judges the goals.
             intake.context.hub.publish_after_commit(intake.db, session_id)
         elif not isinstance(body, AddedLatencyReport):
             # Carrying out a report reads the tables, so earlier messages must be written first.
             intake.flush()
             with intake.db.begin_nested():
                 _act(intake, session_id, message, outcome)
+            outcome.changed_state = True
     except ReembodyError as refusal:
         return refusal
     return None
@@ -126,7 +150,7 @@ def _act(intake: Intake, session_id: str, message: ReportMessage, outcome: Outco
         case AvatarChangeReport():
             _act_on_avatar_change(db, intake.context, session_id, body)
         case CalibrationReport():
-            _act_on_calibration(db, intake.context, session_id, body)
+            _act_on_calibration(db, intake.context, session_id, message.epoch, body)
         case CallReport():
             _act_on_call(db, intake.context, session_id, body)
         case CompletionReport():
@@ -138,26 +162,57 @@ def _act_on_avatar_change(
     db: Session, context: AppContext, session_id: str, body: AvatarChangeReport
 ) -> None:
     session = session_by_id(db, session_id, lock=True)
-    content: ContentRef | None = None
-    if body.held_rad or body.problem:
-        content = store_content(
-            db,
-            session_id=session_id,
-            kind=AVATAR_CHANGE,
-            body={"held_rad": body.held_rad, "problem": body.problem},
-            by="headset",
-            now=context.clock.utc_now(),
-        )
+    _require_consistent(db, session, body)
+    before = state_of(session).avatar_changes
+    if before is not None and before.applied and before.reported == body.revision and body.applied:
+        # Carried out already. An event for each body that takes the changes over would tell when
+        # the body changes.
+        return
+    # Every report has content, also without angles: a body that lacks the part has none.
+    content = store_content(
+        db,
+        session_id=session_id,
+        kind=AVATAR_CHANGE,
+        body={"held_rad": body.held_rad, "problem": body.problem},
+        by="headset",
+        now=context.clock.utc_now(),
+    )
     command = ReportAvatarChange(
         revision=body.revision, applied=body.applied, client_t_s=body.t_s, content=content
     )
     apply_command(db, context, session, command, actor="headset")
 
 
+def _require_consistent(db: Session, session: StudySession, body: AvatarChangeReport) -> None:
+    """Raise ReembodyError for a report that contradicts itself or the changes it answers."""
+    if body.applied and body.problem is not None:
+        raise ReembodyError(
+            "the changes cannot have been applied and have failed",
+            value={"applied": True, "problem": body.problem},
+            valid=[{"applied": True, "problem": None}, {"applied": False, "problem": "the reason"}],
+            remedy="Report what was achieved: the problem only with applied: false.",
+        )
+    in_force = avatar_in_force(db, session)
+    if in_force is None:
+        return
+    is_current = body.revision == in_force.revision
+    known = in_force.settings.held_rad if is_current else in_force.configured.axes
+    unknown = sorted(body.held_rad.keys() - known)
+    if unknown:
+        raise ReembodyError(
+            f"no cast of revision {body.revision} holds the axis {unknown[0]}",
+            value=unknown,
+            valid=sorted(known),
+            remedy="Report the angles of the axes in held_rad of the state's avatar_changes.",
+        )
+
+
 def _act_on_calibration(
-    db: Session, context: AppContext, session_id: str, body: CalibrationReport
+    db: Session, context: AppContext, session_id: str, epoch: int, body: CalibrationReport
 ) -> None:
     session = session_by_id(db, session_id, lock=True)
+    _require_in_time(db, session, epoch)
+    _require_possible(body)
     content = store_content(
         db,
         session_id=session_id,
@@ -172,9 +227,48 @@ def _act_on_calibration(
     apply_command(db, context, session, command, actor="headset")
 
 
+def _require_possible(body: CalibrationReport) -> None:
+    """Raise ReembodyError if a calibration measured what no participant has, or no rotation."""
+    measured = {name: getattr(body, name) for name in POSSIBLE_M}
+    for name, length_m in measured.items():
+        low_m, high_m = POSSIBLE_M[name]
+        if length_m is not None and not low_m <= length_m <= high_m:
+            raise ReembodyError(
+                f"{name} {length_m:g} is not that of a person",
+                value=length_m,
+                valid=[low_m, high_m],
+                remedy="Let the participant stand up straight, and calibrate again.",
+            )
+    for goal, pose in body.tracker_from_goal.items():
+        if abs(math.hypot(*pose.rotation) - 1.0) > ROTATION_TOLERANCE:
+            raise ReembodyError(
+                f"tracker_from_goal.{goal}.rotation is not a rotation",
+                value=list(pose.rotation),
+                valid="w, x, y, z of length 1",
+                remedy="Report a quaternion of unit length, and calibrate again.",
+            )
+
+
+def _require_in_time(db: Session, session: StudySession, epoch: int) -> None:
+    """Raise ReembodyError if a run calibrates that began after the session had ended.
+
+    The journal of a run that began earlier may still bring what that run measured.
+    """
+    run = db.get(TelemetryStream, (session.id, REPORT_STREAM, epoch))
+    if session.ended_at is not None and run is not None and run.first_at > session.ended_at:
+        raise ReembodyError(
+            "the session had ended before this run of the headset began, so it measured nobody",
+            value=session.status,
+            valid=["planned", "active"],
+            remedy="Pair the headset with a session that is running.",
+        )
+
+
 def _act_on_call(db: Session, context: AppContext, session_id: str, body: CallReport) -> None:
     """Act on a call from inside the headset; one that is taken back was either of the two."""
     session = session_by_id(db, session_id, lock=True)
+    if body.what == "taken_back":
+        _require_patience(db, session_id, context.clock.utc_now())
     if body.what == "stop":
         apply_command(db, context, session, AskToStop(client_t_s=body.t_s), actor="headset")
         return
@@ -194,6 +288,28 @@ def _act_on_call(db: Session, context: AppContext, session_id: str, body: CallRe
     )
     if store_change(db, session_id, change):
         context.hub.publish_after_commit(db, session_id)
+
+
+def _require_patience(db: Session, session_id: str, now: datetime) -> None:
+    """Raise ReembodyError if the participant has called and taken back several times just now.
+
+    The last call then stays open until somebody has come: no call is ever ignored, and nobody fills
+    the record with calls.
+    """
+    since = now - REPEATED_WITHIN
+    alarms = select(func.count()).where(
+        AlarmRow.session_id == session_id,
+        AlarmRow.code.in_(("help_asked", "stop_asked")),
+        AlarmRow.state == "cleared",
+        AlarmRow.at > since,
+    )
+    if (db.scalar(alarms) or 0) >= TAKEN_BACK_AT_MOST:
+        raise ReembodyError(
+            "the participant called several times within a minute, so the last call stays open",
+            value="taken_back",
+            valid=["stop", "help"],
+            remedy="Show that somebody will come; the experimenter closes the call.",
+        )
 
 
 def _act_on_phase(
@@ -239,6 +355,55 @@ def _require_phase(intake: Intake, session_id: str, phase_id: int) -> None:
             f"there is no phase {phase_id}",
             value=phase_id,
             remedy="Use the phase_id of the newest state message.",
+        )
+
+
+def _require_ordered(intake: Intake, session_id: str, body: AddedLatencyReport) -> None:
+    """Raise ReembodyError if more was taken off the delay than was ordered in the phase."""
+    ordered_ms = intake.db.get_one(Phase, (session_id, body.phase_id)).latency_ms
+    if 1000.0 * body.compensated_s > ordered_ms + COMPENSATION_MS:
+        raise ReembodyError(
+            f"{1000.0 * body.compensated_s:g} ms cannot be taken off the {ordered_ms:g} ms that "
+            f"phase {body.phase_id} orders",
+            value=body.compensated_s,
+            valid=[0.0, ordered_ms / 1000.0],
+            remedy="Take off at most latency_ms of the phase, nothing where it is 0, and report "
+            "what was taken off.",
+        )
+
+
+def _require_onwards(intake: Intake, session_id: str, epoch: int, body: GoalsReport) -> None:
+    """Raise ReembodyError if goals are reported from a frame on that the run cannot have reached.
+
+    Goals apply from one report to the next, so a report of earlier frames contradicts the last one.
+    """
+    intake.flush()
+    newest = intake.db.scalar(
+        select(ClientReport.payload)
+        .where(
+            ClientReport.session_id == session_id,
+            ClientReport.epoch == epoch,
+            ClientReport.type == "goals",
+            ClientReport.accepted,
+        )
+        .order_by(ClientReport.seq.desc())
+        .limit(1)
+    )
+    first = 0 if newest is None else int(newest["frame_seq"])
+    if body.frame_seq < first:
+        raise ReembodyError(
+            f"the goals from frame {first} on are reported already",
+            value=body.frame_seq,
+            valid=[first],
+            remedy="Report goals in the order of the frames, each before its first frame.",
+        )
+    age_s = intake.positions.at(session_id, REPORT_STREAM, epoch).age_s
+    if exceeds_possible(body.frame_seq, age_s, session_by_id(intake.db, session_id).time_scale):
+        raise ReembodyError(
+            f"no run makes {body.frame_seq} frames in {age_s:.0f} s",
+            value=body.frame_seq,
+            valid="the seq of a frame of this run",
+            remedy="Report the seq of the first frame to which the goals apply.",
         )
 
 

@@ -20,6 +20,12 @@ from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.positions import Outcome
 from app.features.record.telemetry.reports import store_report
 from app.features.record.telemetry.summaries import Summariser
+from app.features.record.telemetry.trials import (
+    TrialContent,
+    TrialEnd,
+    forget_trial,
+    store_trial,
+)
 from app.platform.context import AppContext, Part
 from app.platform.trouble import explain
 from app.wire import Batch, FrameFlags, Probed, Produced, Report, flag_batches
@@ -52,7 +58,7 @@ class ServerSender:
 
 
 class Arrival(NamedTuple):
-    """A message of a session that is queued to be stored."""
+    """A message that is queued to be stored, of a session or of a self-test (`NO_SESSION`)."""
 
     session_id: str
     sender: Sender
@@ -88,7 +94,16 @@ class AlarmContent:
     change: Change
 
 
-Content = BatchContent | Report | ProbeContent | Produced | LossContent | AlarmContent
+Content = (
+    BatchContent
+    | Report
+    | ProbeContent
+    | Produced
+    | LossContent
+    | AlarmContent
+    | TrialContent
+    | TrialEnd
+)
 
 
 @dataclass
@@ -283,3 +298,7 @@ def _store_one(
             intake.store_loss(session_id, cause)
         case AlarmContent(change):
             intake.store_alarm(session_id, change)
+        case TrialContent() as trial:
+            store_trial(intake, trial, outcome)
+        case TrialEnd(trial_id):
+            forget_trial(intake.db, trial_id)

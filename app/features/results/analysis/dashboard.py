@@ -63,14 +63,21 @@ def drawings_of(
     """Yield the figures of one or of all groups, each marked with what the filter selected."""
     chosen = material.with_body(chosen)
     prefix = TITLE_PREFIX[material.kind]
-    note = f"{chosen.words()} {BLINDED_NOTE if material.blinded else ''}".strip()
-    rows = Rows(material.chosen(chosen), invalid=chosen.rows == "all")
+    blinded = BLINDED_NOTE if material.blinded else ""
+    # Filtered by body first: in a blinded study a filter by body must not reveal open sessions.
+    every_body = chosen.model_copy(update={"body": None})
+    rows = Rows(
+        material.chosen(chosen),
+        invalid=chosen.rows == "all",
+        every_body=material.chosen(every_body) if material.bodies else None,
+    )
     for figure in FIGURES:
         if group not in (None, figure.group):
             continue
         for drawing in _explained(figure, rows):
             shown = drawing if chosen.is_all else drawing.among_chosen()
-            yield shown.marked(prefix, note)
+            words = every_body.words() if drawing.every_body else chosen.words()
+            yield shown.marked(prefix, f"{words} {blinded}".strip())
 
 
 def _explained(figure: Figure, rows: Rows) -> Iterator[Drawing]:

@@ -16,6 +16,7 @@ from app.features.results.analysis.schemas import (
     GroupQuery,
     StatisticsView,
 )
+from app.gc_tuning import loading_modules
 from app.platform.dependencies import Context, Reading, SignedIn
 
 router = APIRouter(tags=["analysis"])
@@ -98,8 +99,9 @@ def get_statistics(
 def get_codebook(key: str, db: Reading, _: SignedIn) -> list[ColumnView]:
     """Return the description of every column of the study's export."""
     # Imported here because it loads pandas, which would slow down the server's start.
-    from app.features.results.analysis.codebook import codebook
-    from app.features.results.analysis.tables import has_rules
+    with loading_modules():
+        from app.features.results.analysis.codebook import codebook
+        from app.features.results.analysis.tables import has_rules
 
     rules = has_rules(db, study_by_key(db, key))
     return [

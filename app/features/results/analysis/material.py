@@ -75,7 +75,8 @@ class Material:
     run yet.
 
     Figures and tests compare latencies. If conditions share a latency and differ in their bodies,
-    each figure or test covers one body (`of_body`), so that conditions are never mixed.
+    each of them covers one body (`of_body`), and others compare the bodies at one latency
+    (`at_latency`), so that conditions are never mixed.
     """
 
     protocol: StudyProtocol
@@ -183,6 +184,28 @@ class Material:
             place for place, one in self.conditions.items() if (one.body or OWN_BODY) == body
         }
         tables = Tables(lambda name: _rows_of(self.tables[name], conditions))
+        return replace(self, tables=tables)
+
+    @cached_property
+    def shared_latencies_ms(self) -> tuple[float, ...]:
+        """Return the latencies at which several bodies were worn, in ascending order."""
+        if not self.bodies:
+            return ()
+        ran = set(self.sessions["study_version"])
+        worn: dict[float, set[str | None]] = {}
+        for (version, _), one in self.conditions.items():
+            if not ran or version in ran:
+                worn.setdefault(one.latency_ms, set()).add(one.body)
+        return tuple(sorted(at for at, bodies in worn.items() if len(bodies) > 1))
+
+    def at_latency(self, latency_ms: float) -> "Material":
+        """Return the rows of conditions with this latency, each with its body (column `body`)."""
+        chosen = {
+            place: one.body or OWN_BODY
+            for place, one in self.conditions.items()
+            if one.latency_ms == latency_ms
+        }
+        tables = Tables(lambda name: _with_bodies(self.tables[name], chosen))
         return replace(self, tables=tables)
 
     def of_sessions(self, ids: set[str]) -> "Material":
@@ -296,6 +319,15 @@ def _rows_of(rows: pd.DataFrame, conditions: Collection[tuple[int, str]]) -> pd.
     places = zip(rows["study_version"], rows["condition"], strict=True)
     chosen = [key is None or (version, key) in conditions for version, key in places]
     return rows[pd.Series(chosen, rows.index, dtype=bool)]
+
+
+def _with_bodies(rows: pd.DataFrame, bodies: Mapping[tuple[int, str], str]) -> pd.DataFrame:
+    """Return the rows of these conditions (version, key), each with the name of its body."""
+    if "condition" not in rows.columns:
+        return rows
+    places = list(zip(rows["study_version"], rows["condition"], strict=True))
+    body = pd.Series([bodies.get(place) for place in places], rows.index, dtype=object)
+    return rows.assign(body=body)[body.notna()]
 
 
 def _rows(rows: pd.DataFrame, ids: set[str], limb: str | None) -> pd.DataFrame:

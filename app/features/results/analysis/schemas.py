@@ -167,12 +167,14 @@ class ResultView(BaseModel):
 class GlanceView(BaseModel):
     """The results of one limb in brief, each null if it could not be tested.
 
-    `differ`: whether the latencies differ at all. `first`: the first latency that differs from the
-    smallest one, empty if none does. `trend`: of the trend along latency, one-sided where a
-    direction was predicted. `way`: the direction of the trend.
+    `factor`: what was compared. `differ`: whether the latencies, or bodies, differ at all. `first`:
+    the first latency that differs from the smallest one, or the pairs of bodies that differ (of two
+    bodies, their p); empty if none does. `trend`: of the trend along latency, one-sided where a
+    direction was predicted; bodies have none. `way`: the direction of the trend.
     """
 
     limb: str
+    factor: Literal["latency", "body"] = "latency"
     differ: str | None
     first: str | None
     trend: str | None

@@ -12,6 +12,7 @@ from datetime import date, datetime
 
 from app.features.results.imports.schemas import CellProblem, ColumnSet, Mapping
 from app.features.results.imports.sheet import Sheet, SheetRow
+from app.plain_titles import not_plain
 from app.science.instruments import Instrument, Item, fits, score_answers, valid_answers
 
 MISSING = frozenset({"", "na", "n/a", "nan", "null", ".", "-99"})
@@ -198,6 +199,8 @@ class _Run:
         code = self._cell(row, name)
         if not code:
             self._report(row, name, "The participant is missing.", "Fill it in, or remove the row.")
+        elif (problem := not_plain(code)) is not None:
+            self._report(row, name, problem, "Remove the character in the file.")
         elif "@" in code:
             self._report(
                 row,

@@ -7,9 +7,11 @@ from fastapi import APIRouter, Response
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
-from app.features.design.studies import study_by_key
+from app.features.design.instruments import parsed_instruments, save_instrument
+from app.features.design.studies import newest_version, protocol_of, study_by_key
 from app.features.people.audit import download_place, record, record_copy
 from app.features.record.erasure import clear_erasure_mark, mark_erasure, overwrite
+from app.features.results.imports.offering import offered_file
 from app.features.results.imports.previewing import check, look
 from app.features.results.imports.repository import (
     as_csv,
@@ -27,8 +29,10 @@ from app.features.results.imports.schemas import (
     ImportDetail,
     ImportRequest,
     ImportView,
+    LookedInstrument,
     LookRequest,
     LookView,
+    OfferedInstrument,
     UndoRequest,
 )
 from app.features.results.imports.service import erase_imported, import_answers, undo
@@ -48,6 +52,27 @@ def post_look(key: str, request: LookRequest, db: Reading, _: SignedIn) -> LookV
 def post_check(key: str, request: CheckRequest, db: Reading, _: SignedIn) -> CheckView:
     """Report the result that an import would have, with every invalid cell; nothing is stored."""
     return check(db, study_by_key(db, key), request.text, request.mapping)
+
+
+@router.post("/instrument", status_code=201)
+def post_offered_instrument(
+    key: str, request: OfferedInstrument, db: Writing, context: Context, caller: SignedIn
+) -> LookedInstrument:
+    """Store an offered instrument, as a person has edited it, under a key that is still free."""
+    protocol = protocol_of(newest_version(db, study_by_key(db, key)))
+    known = frozenset(parsed_instruments(db))
+    text = offered_file(request, protocol.languages[0], known)
+    now = context.clock.utc_now()
+    row = save_instrument(db, text, now)
+    record(
+        db,
+        actor=caller.actor,
+        action="answer.instrument_made",
+        subject=f"instrument:{row.key}",
+        details={"study": key, "items": len(request.items)},
+        now=now,
+    )
+    return LookedInstrument(instrument=row.key)
 
 
 @router.post("", status_code=201)

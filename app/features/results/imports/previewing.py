@@ -6,7 +6,8 @@ from sqlalchemy.orm import Session
 
 from app.features.design.instruments import parsed_instruments
 from app.features.design.studies import newest_version, protocol_of
-from app.features.results.imports.applying import Applied, Form, apply_mapping
+from app.features.results.imports.applying import MISSING, Applied, Form, apply_mapping
+from app.features.results.imports.offering import answer_columns, offer, used_columns
 from app.features.results.imports.proposing import likely_instrument, propose
 from app.features.results.imports.repository import active_import, import_view, imports_of
 from app.features.results.imports.schemas import (
@@ -14,6 +15,7 @@ from app.features.results.imports.schemas import (
     ConditionCount,
     FileColumn,
     FormPreview,
+    LeftOutColumn,
     LookRequest,
     LookView,
     Mapping,
@@ -34,12 +36,16 @@ def look(db: Session, study: Study, request: LookRequest) -> LookView:
     """Return a preview of a file and a proposed mapping; raise InvalidInput or NotFound."""
     sheet = read_sheet(request.text, request.header_rows)
     known = parsed_instruments(db)
-    key = request.instrument or likely_instrument(sheet, known)
+    likely, is_likely = likely_instrument(sheet, known)
+    key = request.instrument or likely
     instrument = known_instrument(known, key)
     remembered = _remembered(db, study, key, sheet)
     protocol = protocol_of(newest_version(db, study))
-    proposal = remembered or propose(sheet, instrument, protocol)
+    proposal = remembered
+    if proposal is None and (is_likely or request.instrument is not None):
+        proposal = propose(sheet, instrument, protocol)
     existing = active_import(db, study, key, sha256_of(request.text))
+    offered, left_out = offer(sheet, used_columns(proposal), known)
     return LookView(
         separator=sheet.separator,
         header_rows=sheet.header_rows,
@@ -52,12 +58,15 @@ def look(db: Session, study: Study, request: LookRequest) -> LookView:
         words=_answers_in_words(sheet, proposal, instrument),
         condition_words=_condition_words(sheet, proposal),
         same_file=None if existing is None else import_view(db, existing),
+        offer=offered,
+        left_out=left_out,
     )
 
 
 def check(db: Session, study: Study, text: str, mapping: Mapping) -> CheckView:
     """Return the result that an import would have; raise InvalidInput or NotFound."""
     instrument, applied = applied_to(db, study, text, mapping)
+    left_out = _left_out(read_sheet(text, mapping.header_rows), mapping)
     turning = reversed_items(instrument)
     conditions = Counter((form.condition, form.in_study) for form in applied.forms)
     items = {item for one in mapping.sets for item in one.items}
@@ -75,7 +84,12 @@ def check(db: Session, study: Study, text: str, mapping: Mapping) -> CheckView:
         unknown_words=list(applied.unknown_words)[:_SHOWN_WORDS],
         shift=_shift(instrument, mapping, applied),
         reversed_items=[key for key in turning if key in items],
-        notes=[*_not_mapped(instrument, items), *reversal_notes(turning, applied.forms)],
+        notes=[
+            *_not_mapped(instrument, items),
+            *_not_imported(left_out),
+            *reversal_notes(turning, applied.forms),
+        ],
+        left_out=left_out,
         first_forms=[_preview(form) for form in applied.forms[:_SHOWN_ROWS]],
     )
 
@@ -129,6 +143,24 @@ def _not_mapped(instrument: Instrument, items: set[str]) -> list[str]:
     if not lacking:
         return []
     return [f"No column for {', '.join(lacking)}: scores that need these items stay empty."]
+
+
+def _left_out(sheet: Sheet, mapping: Mapping) -> list[LeftOutColumn]:
+    return [
+        LeftOutColumn(name=name, filled=sum(value.casefold() not in MISSING for value in values))
+        for name in answer_columns(sheet, mapping)
+        for values in [sheet.values(name)]
+    ]
+
+
+def _not_imported(left_out: list[LeftOutColumn]) -> list[str]:
+    if not left_out:
+        return []
+    names = ", ".join(one.name for one in left_out[:_SHOWN_ROWS])
+    more = f" and {len(left_out) - _SHOWN_ROWS} more" if len(left_out) > _SHOWN_ROWS else ""
+    answers = sum(one.filled for one in left_out)
+    count = f"{len(left_out)} columns that look like answers are not imported ({answers} answers)"
+    return [f"{count}: {names}{more}."]
 
 
 def _preview(form: Form) -> FormPreview:

@@ -15,8 +15,15 @@ _CONDITION = ("condition", "bedingung", "latency", "latencyms", "method", "respo
 _DATE = ("recordeddate", "date", "datum", "enddate", "submitdate", "startdate")
 
 
-def likely_instrument(sheet: Sheet, instruments: Map[str, Instrument]) -> str:
-    """Return the instrument with the largest share of items that have a column.
+LEAST_SHARE = 1 / 3
+"""The share of an instrument's items that need a column before a file counts as answers to it.
+
+Items are often called q1, q2, ...: a file with a Q2 of its own has answers to something else.
+"""
+
+
+def likely_instrument(sheet: Sheet, instruments: Map[str, Instrument]) -> tuple[str, bool]:
+    """Return the instrument with the largest share of items that have a column, and if it is large.
 
     If no item has a column, the first instrument by name is returned.
     """
@@ -25,17 +32,18 @@ def likely_instrument(sheet: Sheet, instruments: Map[str, Instrument]) -> str:
         sets = column_sets(sheet, instruments[key])
         return max((len(one.items) for one in sets), default=0) / len(instruments[key].items)
 
-    return max(sorted(instruments), key=share)
+    best = max(sorted(instruments), key=share)
+    return best, share(best) >= LEAST_SHARE
 
 
 def propose(sheet: Sheet, instrument: Instrument, protocol: StudyProtocol) -> Mapping | None:
     """Return a mapping, or None if no item column or no participant column was identified."""
     sets = column_sets(sheet, instrument)
-    participant = _named(sheet, (*_PARTICIPANT, *_MORE_PARTICIPANT))
+    participant = participant_column(sheet)
     if not sets or participant is None:
         return None
     taken = {participant, *(column for one in sets for column in one.items.values())}
-    condition = None if len(sets) > 1 else _named(sheet, _CONDITION, taken)
+    condition = None if len(sets) > 1 else condition_column(sheet, taken)
     words = (
         sorted(set(sheet.values(condition)) - {""})
         if condition is not None
@@ -50,6 +58,16 @@ def propose(sheet: Sheet, instrument: Instrument, protocol: StudyProtocol) -> Ma
         conditions=study_conditions(words[:100], protocol),
         header_rows=sheet.header_rows,
     )
+
+
+def participant_column(sheet: Sheet) -> str | None:
+    """Return the column that names the participants; None if there is no usual one."""
+    return _named(sheet, (*_PARTICIPANT, *_MORE_PARTICIPANT))
+
+
+def condition_column(sheet: Sheet, taken: Iterable[str] = ()) -> str | None:
+    """Return the column that names the conditions and is not taken; None if there is none."""
+    return _named(sheet, _CONDITION, taken)
 
 
 def column_sets(sheet: Sheet, instrument: Instrument) -> list[ColumnSet]:

@@ -73,15 +73,18 @@ def _tests(cells: Cells) -> dict[str, object]:
             a=one.a,
             b=one.b,
             n=one.test.n,
-            w=one.test.w,
-            p=one.test.p,
-            p_holm=one.p_holm,
-            rank_biserial=one.test.rank_biserial,
+            w=None if one.test.degenerate else one.test.w,
+            p=None if one.test.degenerate else one.test.p,
+            p_holm=None if one.test.degenerate else one.p_holm,
+            rank_biserial=None if one.test.degenerate else one.test.rank_biserial,
+            degenerate=one.test.degenerate or None,
         )
         for one in pairwise(cells.values, levels)
     ]
     fields: dict[str, object] = {"pairs": pairs, "left_out": list(complete.left_out)}
-    if len(levels) > _MIN_CONDITIONS:
+    if all(one.degenerate for one in pairs):
+        fields["why_not"] = "Nobody differs between conditions, so there is nothing to test."
+    elif len(levels) > _MIN_CONDITIONS:
         omnibus = friedman(complete.values)
         p = "p < .001" if omnibus.p < 0.001 else f"p = {omnibus.p:.3f}".replace("0.", ".", 1)
         fields["test"] = (

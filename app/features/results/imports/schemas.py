@@ -130,11 +130,59 @@ class ImportView(BaseModel):
     mapping: Mapping
 
 
+class OfferedItem(_Body):
+    """An item of an offered instrument: the column it was made from, and its words."""
+
+    key: Short
+    column: Name
+    text: Annotated[str, StringConstraints(min_length=1, max_length=1000)]
+
+
+class OfferedInstrument(_Body):
+    """An instrument of the lab's own for columns of no known one; a person checks and edits it.
+
+    `guessed_minimum`, `guessed_maximum`: the end of the scale that was guessed from the answers;
+    None once a person has confirmed it. An end that differs from its guess was set by a person.
+    `seen`: the answers in the file. `doubts`: what speaks against the guess. `labels`: the words of
+    the scale, from lowest to highest, if the answers are words.
+    """
+
+    key: Short
+    title: Short
+    minimum: Annotated[int, Field(ge=-1000, le=1000)]
+    maximum: Annotated[int, Field(ge=-1000, le=1000)]
+    guessed_minimum: int | None = None
+    guessed_maximum: int | None = None
+    seen: Annotated[str, StringConstraints(max_length=2000)] = ""
+    doubts: Annotated[list[Word], Field(max_length=10)] = []
+    labels: Annotated[list[Short], Field(max_length=101)] = []
+    items: Annotated[list[OfferedItem], Field(min_length=1, max_length=200)]
+
+
+class LookedInstrument(BaseModel):
+    """The key of the instrument that was made from an offer."""
+
+    instrument: str
+
+
+class LeftOutColumn(BaseModel):
+    """A column that would not be imported, and how many of its cells have a value.
+
+    `reason`: why it is not offered as an item, if it looks like one; absent otherwise.
+    """
+
+    name: str
+    filled: int
+    reason: Annotated[str | None, Field(exclude_if=lambda value: value is None)] = None
+
+
 class LookView(BaseModel):
     """The preview of a file, and a proposed mapping.
 
     `remembered`: the proposal is the mapping of an earlier import. `proposal` is None if no column
-    was identified for the participants or for any item.
+    was identified for the participants or for any item. `offer`: an instrument for columns that
+    look like answers and that the proposal does not read. `left_out`: all other columns that it
+    does not read.
     """
 
     separator: str
@@ -148,6 +196,8 @@ class LookView(BaseModel):
     words: list[str]
     condition_words: list[str]
     same_file: ImportView | None
+    offer: OfferedInstrument | None
+    left_out: list[LeftOutColumn]
 
 
 class CellProblem(BaseModel):
@@ -192,6 +242,7 @@ class CheckView(BaseModel):
     """A preview of an import's result; nothing was stored. An import with problems is rejected.
 
     `reversed_items`: those that the instrument's formulas reverse. `notes`: points to check.
+    `left_out`: columns that look like answers and are not imported.
     """
 
     forms: int
@@ -205,6 +256,7 @@ class CheckView(BaseModel):
     shift: Shift | None
     reversed_items: list[str]
     notes: list[str]
+    left_out: list[LeftOutColumn]
     first_forms: list[FormPreview]
 
 
@@ -220,15 +272,19 @@ class ConditionMean(BaseModel):
 
 
 class PairView(BaseModel):
-    """The comparison of two conditions."""
+    """The comparison of two conditions.
+
+    `degenerate`: why the test says nothing about them; it then has no figures.
+    """
 
     a: str
     b: str
     n: int
-    w: float
-    p: float
-    p_holm: float
-    rank_biserial: float
+    w: float | None
+    p: float | None
+    p_holm: float | None
+    rank_biserial: float | None
+    degenerate: str | None
 
 
 class ScoreResult(BaseModel):

@@ -6,6 +6,7 @@ A rule that cannot be judged, because nothing was measured, excludes nobody; thi
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import numpy as np
 import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -21,9 +22,8 @@ from app.features.results.analysis.tables import (
 from app.features.results.preregistration.schemas import ExclusionView
 from app.models import InstrumentVersion
 from app.protocol import COUNTED_KINDS, ExclusionRule
+from app.science.instruments import straight_lined
 
-MIN_STRAIGHT_LINED_RATINGS = 5
-"""Fewest ratings of a form for which identical ratings count as straight-lining."""
 OVER = ("completed", "aborted", "withdrawn")
 
 
@@ -141,9 +141,9 @@ def _straight(tables: Tables, session_id: str, limit: float) -> str | None:
     for (_, key, version), form in rows.groupby(
         ["submission_id", "instrument", "instrument_version"]
     ):
-        values = form["value_number"].astype("float64")
-        honest = float(values.iloc[0]) == 0.0 and (str(key), int(str(version))) in tables.one_sided
-        alike += len(values) >= MIN_STRAIGHT_LINED_RATINGS and values.nunique() == 1 and not honest
+        ratings = form["value_number"].to_numpy(dtype=np.float64)
+        one_sided = (str(key), int(str(version))) in tables.one_sided
+        alike += bool(straight_lined(ratings, one_sided=one_sided))
     return None if alike <= limit else f"{alike} forms with identical ratings, declared {limit:g}"
 
 

@@ -10,7 +10,6 @@ from app.features.results.analysis.tables import Kind, scores_table
 from app.features.results.preregistration.exclusions import Tables
 from app.features.results.preregistration.schemas import PrimaryResult
 from app.protocol import Preregistration, PrimaryTest, StudyProtocol
-from app.science.statistical_tests import Sample, statistical_test
 from app.science.statistics import FloatArray
 
 _COLUMNS = {"contact_time": "side_red_s", "completions": "completions"}
@@ -53,20 +52,11 @@ def values_of(
 
 def make_test(declared: Preregistration, found: Values) -> PrimaryResult:
     """Compute the declared test; raise StatisticsError if the data do not allow it."""
-    primary = declared.primary
-    sample = Sample(
-        values=found.values,
-        levels=found.levels,
-        direction=primary.direction,
-        reference=primary.reference,
-        holm=primary.correction == "holm",
-        alpha=declared.alpha,
-    )
-    outcome = statistical_test(primary.test).load()(sample)
+    outcome = declared.outcome_of(found.values, found.levels)
     return PrimaryResult(
         n=outcome.n,
         sentence=outcome.sentence,
-        holds=outcome.p <= declared.alpha,
+        holds=declared.is_met_by(outcome),
         columns=list(outcome.columns),
         rows=[list(row) for row in outcome.rows],
         method=outcome.method,

@@ -85,7 +85,11 @@ def _applied_s(db: Session, session: StudySession, clock: PhaseClock) -> dict[in
     """Return, by the number of the change, when the headset first applied it in this phase."""
     reports = db.scalars(
         select(ClientReport)
-        .where(ClientReport.session_id == session.id, ClientReport.type == "avatar_changes")
+        .where(
+            ClientReport.session_id == session.id,
+            ClientReport.type == "avatar_changes",
+            ClientReport.accepted,
+        )
         .order_by(ClientReport.epoch, ClientReport.seq)
     )
     found: dict[int, float] = {}

@@ -35,7 +35,7 @@ from app.database import Database
 from app.features.record.telemetry import Frames, epochs_of, hinges_of, iter_frames
 from app.features.results.replay.errors import RunErrors, no_errors
 from app.features.results.replay.grid import Grid, Sampling, uncovered
-from app.features.results.replay.service import USUAL_STATURE_M, stature_of
+from app.features.results.replay.service import body_of
 from app.features.results.replay.times import phase_clock
 from app.models import Phase
 from app.platform.access import session_by_id
@@ -49,7 +49,6 @@ from app.science.skeleton import (
     JOINT_NAMES,
     PARENTS,
     Skeleton,
-    build_skeleton,
     forward_kinematics,
 )
 from app.wire import BODY_STREAMS, FINGER_STREAMS, StreamName
@@ -249,7 +248,7 @@ def placed_movement(
             phase_id,
             clock.offsets_s,
             clock.duration_s,
-            build_skeleton(stature_of(db, session) or USUAL_STATURE_M),
+            body_of(db, session, phase, full=full).skeleton(),
             full=full,
             hinges=hinges_of(db, session_id, phase_id) if full else None,
             rotations=rotations,

@@ -6,7 +6,9 @@ would reveal the latency.
 """
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
@@ -15,14 +17,15 @@ from app import __version__
 from app.errors import Gone, NotFound, NotNow
 from app.features.record.headset import participant_info
 from app.features.record.sessions import (
-    content_body,
-    contents_of,
+    avatar_of_phase,
     erased_session,
+    newest_calibration,
     protocol_of_session,
 )
 from app.features.results.replay.schemas import View
 from app.models import Phase, StudySession, TelemetryBatch, TelemetryChunk
 from app.platform.access import Caller, is_blind, session_by_id
+from app.science.skeleton import Skeleton, SkeletonError, build_skeleton
 
 OVER = ("done", "voided")
 USUAL_STATURE_M = 1.7
@@ -76,13 +79,44 @@ def replayable(db: Session, caller: Caller, session_id: str, phase_id: int) -> R
     return Replayable(session, phase, "participant" if blind else "full")
 
 
-def stature_of(db: Session, session: StudySession) -> float | None:
-    """Return the stature of the session's body: the recorded avatar's, else the participant's."""
-    recorded = [content_body(row) for row in contents_of(db, session.id, "avatar")]
-    for body in reversed(recorded):
-        if isinstance(body, dict) and isinstance(body.get("stature_m"), float):
-            return float(body["stature_m"])
-    return participant_info(db, session).stature_m
+@dataclass(frozen=True)
+class ReplayedBody:
+    """The lengths of the body that a phase is replayed with.
+
+    `stature_m` is None if neither an avatar nor the participant's is known. `segments_m`: measured
+    lengths by the names of an avatar's segments.
+    """
+
+    stature_m: float | None
+    segments_m: Mapping[str, float]
+
+    def skeleton(self) -> Skeleton:
+        """Return its skeleton; of the usual proportions where no skeleton has its lengths."""
+        stature_m = self.stature_m or USUAL_STATURE_M
+        try:
+            return build_skeleton(stature_m, self.segments_m)
+        except SkeletonError:
+            return build_skeleton(stature_m)
+
+
+def body_of(db: Session, session: StudySession, phase: Phase, *, full: bool) -> ReplayedBody:
+    """Return the body shown in a phase; without a record of it, the participant's.
+
+    It is that of the avatar that the phase began with: one that is built later changes nothing
+    about a movement that was recorded before. A reader who may not see the avatar (not `full`)
+    gets that of the configuration's body, because another one could tell which body was worn.
+    A session without a physics avatar shows the arms of the calibration that the phase began with.
+    """
+    own = (phase.body, None) if full else (None,)
+    found = (avatar_of_phase(db, session.id, phase.phase_id, body) for body in own)
+    avatar: Mapping[str, Any] | None = next((one for one in found if one is not None), None)
+    if avatar is None:
+        measured = newest_calibration(db, session, before=phase.started_at)
+        segments_m = {} if measured is None else measured.report.get("segments_m", {})
+        return ReplayedBody(participant_info(db, session).stature_m, segments_m)
+    built_m = avatar.get("stature_m")
+    stature_m = built_m if isinstance(built_m, float) else participant_info(db, session).stature_m
+    return ReplayedBody(stature_m, avatar.get("segments_m", {}))
 
 
 def frames_stored(db: Session, phase: Phase) -> int:
@@ -100,6 +134,14 @@ def movement_tag(db: Session, phase_view: Replayable) -> str:
     phase = phase_view.phase
     state = (
         *(phase.session_id, phase.phase_id, phase.status, phase.active_s, frames_stored(db, phase)),
-        *(stature_of(db, phase_view.session), phase_view.view, __version__),
+        *(
+            _lengths(body_of(db, phase_view.session, phase, full=phase_view.full)),
+            phase_view.view,
+            __version__,
+        ),
     )
     return f'"{hashlib.sha256(repr(state).encode()).hexdigest()[:32]}"'
+
+
+def _lengths(body: ReplayedBody) -> tuple[float | None, tuple[tuple[str, float], ...]]:
+    return body.stature_m, tuple(sorted(body.segments_m.items()))

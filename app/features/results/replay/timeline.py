@@ -30,8 +30,8 @@ from app.features.results.replay.schemas import (
 from app.features.results.replay.service import (
     USUAL_STATURE_M,
     Replayable,
+    body_of,
     frames_stored,
-    stature_of,
 )
 from app.features.results.replay.times import clock_reports_of, phase_clock
 from app.models import Completion, Contact, Phase, Submission
@@ -42,7 +42,7 @@ def replay_of(db: Session, phase_view: Replayable) -> Replay:
     """Return everything of a replay except the movement."""
     session, phase = phase_view.session, phase_view.phase
     clock = phase_clock(db, session, phase)
-    stature_m = stature_of(db, session)
+    stature_m = body_of(db, session, phase, full=phase_view.full).stature_m
     administrations = _administrations(db, phase_view)
     scores = [one for one in stored_scores(db, session) if one.administration in administrations]
     return Replay(

@@ -26,6 +26,7 @@ from app.science.avatar.body.layers import (
     CollisionBits,
     collision_bits,
     excluded_pairs,
+    layer_bit,
 )
 from app.science.avatar.body.masses import BodyMasses, body_masses
 from app.science.avatar.body.parts import (
@@ -95,6 +96,7 @@ __all__ = [
     "figure_of",
     "finger_bones",
     "humanoid_of",
+    "layer_bit",
     "mass_fractions",
     "mirrored_name",
     "posed_nodes",

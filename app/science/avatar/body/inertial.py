@@ -34,6 +34,11 @@ class Inertial:
         """Return the object in a frame whose origin lies at `-by`."""
         return Inertial(self.mass_kg, v_add(self.center_m, by), self.inertia_kg_m2)
 
+    def scaled(self, factor: float) -> "Inertial":
+        """Return the object with a mass that is larger by a factor, at the same places."""
+        xx, yy, zz, xy, xz, yz = (factor * one for one in self.inertia_kg_m2)
+        return Inertial(factor * self.mass_kg, self.center_m, (xx, yy, zz, xy, xz, yz))
+
     def turned(self, rotation: Quaternion, about: Vector) -> "Inertial":
         """Return the object rotated about a point."""
         center = v_add(about, q_rotate(rotation, v_subtract(self.center_m, about)))

@@ -98,8 +98,8 @@ def collision_bits(
     layer = LAYER_OF[part]
     if not self_collision:
         return CollisionBits(SCENE_BIT, 0)
-    partners = sum(_bit(other) for other in LAYERS if frozenset((layer, other)) in colliding)
-    return CollisionBits(SCENE_BIT | _bit(layer), partners)
+    partners = sum(layer_bit(other) for other in LAYERS if frozenset((layer, other)) in colliding)
+    return CollisionBits(SCENE_BIT | layer_bit(layer), partners)
 
 
 def collide(part: str, other: str) -> bool:
@@ -110,17 +110,22 @@ def collide(part: str, other: str) -> bool:
     return frozenset((LAYER_OF[part], LAYER_OF[other])) in COLLIDING
 
 
-def excluded_pairs(parents: Mapping[str, str | None]) -> Iterator[tuple[str, str]]:
+def excluded_pairs(
+    parents: Mapping[str, str | None], colliding: Collection[frozenset[str]] = COLLIDING
+) -> Iterator[tuple[str, str]]:
     """Yield the pairs of present parts that never collide although their layers do.
 
     These are parent and child, and a hand with its fingers against its own forearm.
 
     Args:
         parents: present part -> the present part it is attached to.
+        colliding: the pairs of layers that collide in the configuration.
     """
     listed: set[tuple[str, str]] = set()
     for part, parent in parents.items():
-        if parent is not None and collide(part, parent):
+        if parent is None:
+            continue
+        if collide(part, parent) or frozenset((LAYER_OF[part], LAYER_OF[parent])) in colliding:
             listed.add((parent, part))
             yield parent, part
     for side in SIDES:
@@ -135,5 +140,6 @@ def _hand(side: str, present: Collection[str]) -> Iterator[str]:
     return (part for part in present if part.startswith(starts))
 
 
-def _bit(layer: str) -> int:
+def layer_bit(layer: str) -> int:
+    """Return the bit of a layer in both of MuJoCo's collision masks."""
     return SCENE_BIT << (1 + LAYERS.index(layer))

@@ -65,13 +65,21 @@ class BodyMasses:
         return fsum(part.mass_kg for part in self.parts.values())
 
 
-def body_masses(body: Body, total_kg: float, *, population: Population = "average") -> BodyMasses:
+def body_masses(
+    body: Body,
+    total_kg: float,
+    *,
+    population: Population = "average",
+    relative: Mapping[str, float] | None = None,
+) -> BodyMasses:
     """Distribute a body's mass among its parts.
 
     Args:
         body: the body, whose lengths scale the radii of gyration.
         total_kg: 1 to 500 kg.
         population: supplies the relative masses.
+        relative: part -> its share of the mass, if it differs; the other parts share the rest as
+            the population has it. Centres of mass stay, and radii of gyration, too.
 
     Raises:
         BodyError: the mass is out of range.
@@ -81,7 +89,8 @@ def body_masses(body: Body, total_kg: float, *, population: Population = "averag
             f"A mass of {total_kg} kg is outside {_LIGHTEST_KG:g} to {_HEAVIEST_KG:g} kg: give the"
             " mass of the whole body in kilograms."
         )
-    whole = _MassDistribution(body.proportions, total_kg, population).parts()
+    usual = _MassDistribution(body.proportions, total_kg, population).parts()
+    whole = _with_shares(usual, relative or {}, total_kg)
     places = body.proportions.places_m()
     inertials_by_part: dict[str, list[Inertial]] = {part: [] for part in body.parts}
     for part in PART_NAMES:
@@ -91,6 +100,26 @@ def body_masses(body: Body, total_kg: float, *, population: Population = "averag
         )
     parts = {part: combined(pieces) for part, pieces in inertials_by_part.items()}
     return BodyMasses(population, MappingProxyType(parts))
+
+
+def _with_shares(
+    whole: Mapping[str, Inertial], relative: Mapping[str, float], total_kg: float
+) -> Mapping[str, Inertial]:
+    if not relative:
+        return whole
+    given = fsum(relative.values())
+    rest_kg = fsum(one.mass_kg for part, one in whole.items() if part not in relative)
+    if rest_kg > 0.0:
+        others = (1.0 - given) * total_kg / rest_kg
+        per_share_kg = total_kg
+    else:
+        others, per_share_kg = 0.0, total_kg / given
+    return {
+        part: one.scaled(
+            relative[part] * per_share_kg / one.mass_kg if part in relative else others
+        )
+        for part, one in whole.items()
+    }
 
 
 class _MassDistribution:

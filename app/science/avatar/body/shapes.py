@@ -15,10 +15,10 @@ from math import pi
 from app.science.avatar.body.parts import FINGERS, SEGMENTS
 from app.science.avatar.body.proportions import Proportions
 from app.science.rotations import Vector, v_add, v_length, v_subtract
+from app.science.skeleton import HALF_FOOT_BREADTH, TOES_JOINT_HEIGHT
 
 _HALF_BREADTHS = {"Hips": 0.0955, "Spine": 0.082, "Chest": 0.085, "UpperChest": 0.095}
-_HALF_PALM, _HALF_FOOT_BREADTH = 0.008, 0.0275
-_FOOT_HEIGHT, _TOES_HEIGHT, _TOES_JOINT_HEIGHT = 0.028, 0.020, 0.014
+_HALF_PALM, _FOOT_HEIGHT, _TOES_HEIGHT = 0.008, 0.028, 0.020
 
 
 @dataclass(frozen=True)
@@ -137,10 +137,10 @@ def _foot(body: Proportions, part: str) -> Box:
 
 
 def _toes(body: Proportions, part: str) -> Box:
-    sole = -_TOES_JOINT_HEIGHT * body.stature_m
+    sole = -TOES_JOINT_HEIGHT * body.stature_m
     return _block(body, body.ends_m[part][2], 0.0, sole, _TOES_HEIGHT * body.stature_m)
 
 
 def _block(body: Proportions, front: float, back: float, sole: float, height: float) -> Box:
-    half = (_HALF_FOOT_BREADTH * body.stature_m, height / 2, (back - front) / 2)
+    half = (HALF_FOOT_BREADTH * body.stature_m, height / 2, (back - front) / 2)
     return Box((0.0, sole + height / 2, (front + back) / 2), half)

@@ -94,7 +94,7 @@ class AxisSettings:
                     "low_deg",
                     f"The lower limit, {math.degrees(self.low_rad):g} deg, lies above the upper"
                     f" one, {math.degrees(self.high_rad):g} deg.",
-                    value=math.degrees(self.low_rad),
+                    value=degrees_of(self.low_rad),
                     valid=f"at most {math.degrees(self.high_rad):g}",
                     remedy="Swap them, or make them equal to lock the axis.",
                 ),
@@ -158,7 +158,7 @@ _RANGES: tuple[tuple[str, str, float, float], ...] = (
 def _number_problem(path: str, value: float, least: float, most: float) -> AvatarProblem | None:
     if math.isfinite(value) and least <= value <= most:
         return None
-    convert, unit = (math.degrees, " deg") if path.endswith("_deg") else (float, "")
+    convert, unit = (degrees_of, " deg") if path.endswith("_deg") else (float, "")
     return AvatarProblem(
         path,
         f"{convert(value):g}{unit} is out of range."

@@ -16,7 +16,14 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final, Literal, cast, get_args
 
-from app.science.avatar.body import AXES_OF, AXIS_NAMES, PART_NAMES, Population
+from app.science.avatar.body import (
+    AXES_OF,
+    AXIS_NAMES,
+    COLLIDING,
+    PART_NAMES,
+    REQUIRED_PARTS,
+    Population,
+)
 from app.science.avatar.configuration.axis_settings import (
     AvatarProblem,
     AvatarSettingsError,
@@ -24,8 +31,22 @@ from app.science.avatar.configuration.axis_settings import (
     degrees_of,
     rounded_angle,
 )
+from app.science.avatar.configuration.compliance import (
+    Compliance,
+    compliance_problems,
+    normal,
+    softened,
+)
 from app.science.avatar.configuration.groups import AXIS_ORDER, GROUP_NAMES, PART_OF, axes_of
 from app.science.avatar.configuration.model_options import ColliderKind
+from app.science.avatar.configuration.optional import (
+    MS_PER_S,
+    PERCENT,
+    delay_problems,
+    layer_problems,
+    mass_problems,
+    ordered,
+)
 
 Hips = Literal["carried", "welded"]
 TargetSpace = Literal["local", "world"]
@@ -66,6 +87,13 @@ class Configuration:
         locked_groups: groups that are locked, in the order of `GROUP_NAMES`, each once.
         held_rad: axis -> angle at which an axis of a locked group is held; axes that are absent are
             held at the T-pose's.
+        colliding: the pairs of collision layers whose parts collide, if `self_collision` is on.
+        delays_s: body part -> time by which the targets of its axes lag behind those of the other
+            parts, in addition to the latency of the condition.
+        relative_masses: body part -> its share of the mass, above zero. The other parts share the
+            rest as the population has it.
+        compliance: group -> how it gives way, by the names of `COMPLIANT_GROUPS`; groups that are
+            absent are stiff.
 
     Raises:
         AvatarSettingsError: a value is invalid; the error lists all that are.
@@ -83,25 +111,33 @@ class Configuration:
     locked_groups: tuple[str, ...] = ()
     held_rad: Mapping[str, float] = field(default_factory=dict)
     humanoid: str | None = None
+    colliding: frozenset[frozenset[str]] = COLLIDING
+    delays_s: Mapping[str, float] = field(default_factory=dict)
+    relative_masses: Mapping[str, float] = field(default_factory=dict)
+    compliance: Mapping[str, Compliance] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         problems = tuple(_problems_of(self))
         if problems:
             raise AvatarSettingsError(problems)
-        ordered = {name: self.axes[name] for name in AXIS_NAMES if name in self.axes}
+        axes = {name: self.axes[name] for name in AXIS_NAMES if name in self.axes}
         colliders = {
             part: self.part_colliders[part] for part in PART_NAMES if part in self.part_colliders
         }
-        held = {
-            name: rounded_angle(self.held_rad[name]) for name in ordered if name in self.held_rad
+        held = {name: rounded_angle(self.held_rad[name]) for name in axes if name in self.held_rad}
+        delays = {
+            part: delay_s for part, delay_s in ordered(self.delays_s, MS_PER_S).items() if delay_s
         }
         locked = tuple(name for name in GROUP_NAMES if name in self.locked_groups)
         for name, value in (
-            ("axes", MappingProxyType(ordered)),
+            ("axes", MappingProxyType(axes)),
             ("total_mass_kg", float(self.total_mass_kg)),
             ("part_colliders", MappingProxyType(colliders)),
             ("locked_groups", locked),
             ("held_rad", MappingProxyType(held)),
+            ("delays_s", MappingProxyType(delays)),
+            ("relative_masses", MappingProxyType(ordered(self.relative_masses, PERCENT))),
+            ("compliance", MappingProxyType(normal(self.compliance))),
         ):
             object.__setattr__(self, name, value)
 
@@ -129,6 +165,11 @@ class Configuration:
             }
         )
 
+    @property
+    def motors(self) -> Mapping[str, AxisSettings]:
+        """Return `in_force` with the stiffness of compliant groups, as motors are built."""
+        return MappingProxyType(softened(self.in_force, self.compliance))
+
     def collider_of(self, part: str) -> ColliderKind:
         """Return the kind of collider of a body part."""
         return self.part_colliders.get(part, self.colliders)
@@ -147,6 +188,10 @@ def _problems_of(configuration: Configuration) -> Iterator[AvatarProblem]:
     yield from _axes_problems(configuration)
     yield from _body_problems(configuration)
     yield from _lock_problems(configuration)
+    yield from layer_problems(configuration.colliding)
+    yield from delay_problems(configuration.delays_s)
+    yield from mass_problems(configuration.relative_masses)
+    yield from compliance_problems(configuration.compliance, configuration.delays_s)
 
 
 def piece_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
@@ -164,6 +209,39 @@ def piece_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
         valid=["simple", "none"],
         remedy="Upload a humanoid model and name its hash as 'humanoid', or choose 'simple'.",
     )
+
+
+def idle_delay_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
+    """Yield a problem for every delay of a part without axes, such as the hips.
+
+    This is checked when a configuration is saved, not whenever one is read.
+    """
+    for part in configuration.delays_s:
+        if not AXES_OF.get(part):
+            yield AvatarProblem(
+                f"delays_ms.{part}",
+                f"{part} has no axis that could lag behind: it moves with the participant's.",
+                value=part,
+                valid=[one for one in PART_NAMES if AXES_OF.get(one)],
+                remedy="Take this delay out, or give it to a part with axes.",
+            )
+
+
+def missing_part_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
+    """Yield a problem if parts without which no body can be built have no axes.
+
+    This is checked when a configuration is saved, not whenever one is read.
+    """
+    required = [part for part in REQUIRED_PARTS if AXES_OF.get(part)]
+    missing = [part for part in required if part not in configuration.parts]
+    if missing:
+        yield AvatarProblem(
+            "axes",
+            f"No body can be built without {', '.join(missing)}.",
+            value=missing,
+            valid=required,
+            remedy="Give all axes of these parts.",
+        )
 
 
 def _axes_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
@@ -244,7 +322,7 @@ def _lock_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
             yield AvatarProblem(
                 path,
                 f"{name} cannot be held at {math.degrees(angle_rad):g} deg.",
-                value=math.degrees(angle_rad),
+                value=degrees_of(angle_rad),
                 valid=f"from {low:g} to {high:g}",
                 remedy="Give an angle within its limits, or widen them.",
             )

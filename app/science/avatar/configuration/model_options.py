@@ -18,6 +18,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
+from app.science.avatar.body import COLLIDING
+
 TIMESTEP_S: Final = 0.002
 """Time step of the simulation. When the target jumps over the full range, 5 ms is unstable at four
 times the default gains, 2 ms at eight times."""
@@ -45,6 +47,9 @@ class ModelOptions:
         hips: how the hips follow the participant; see the module docstring.
         gravity: whether gravity acts on the body.
         self_collision: whether parts collide with each other as `layers` defines.
+        colliding: the pairs of collision layers that collide.
+        delays_s: body part -> time by which the motors of its axes lag behind those of the others.
+        carried_parts: the parts whose weight is carried (`compliance`).
         longest_delay_s: the longest latency that can be set while the model runs; see
             `MjModel.actuator_delay`. With zero there are no delay buffers.
     """
@@ -53,6 +58,9 @@ class ModelOptions:
     gravity: bool = True
     self_collision: bool = True
     longest_delay_s: float = 1.0
+    colliding: frozenset[frozenset[str]] = COLLIDING
+    delays_s: Mapping[str, float] = field(default_factory=dict)
+    carried_parts: frozenset[str] = frozenset()
 
 
 DEFAULT_OPTIONS: Final = ModelOptions()

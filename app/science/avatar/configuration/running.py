@@ -12,7 +12,7 @@ put on (an angle of None). Axes that the configuration locks have no hinge and a
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from app.science.avatar.body import COLLIDING, PART_NAMES
+from app.science.avatar.body import PART_NAMES
 from app.science.avatar.configuration.axis_settings import AxisSettings
 from app.science.avatar.configuration.configuration import Configuration
 from app.science.avatar.configuration.groups import PART_OF
@@ -61,9 +61,9 @@ def as_configured(configuration: Configuration) -> RunningSettings:
         gravity=configuration.gravity,
         self_collision=configuration.self_collision,
         colliders={part: configuration.collider_of(part) for part in PART_NAMES},
-        layers=COLLIDING,
+        layers=configuration.colliding,
         held_rad={},
         axes={
-            name: settings for name, settings in configuration.axes.items() if name not in locked
+            name: settings for name, settings in configuration.motors.items() if name not in locked
         },
     )

@@ -183,6 +183,34 @@ def with_single_template(
     return replace(configuration, axes=axes)
 
 
+def joined(configuration: Configuration, parts: Iterable[str]) -> Configuration:
+    """Return the configuration as the single template has it, for some parts.
+
+    Their limits and drives become those of their single joints, so that converting them back
+    gives the same. What the single template cannot hold is lost. Raises AvatarSettingsError.
+    """
+    axes = dict(configuration.axes)
+    present = set(configuration.parts)
+    for part in parts:
+        if part in present:
+            axes.update(to_multiple(to_single(part, axes)))
+    return replace(configuration, axes=axes)
+
+
+def split(configuration: Configuration, joints: Iterable[SingleJoint]) -> Configuration:
+    """Return the configuration with the axes of some parts made from single joints.
+
+    Unlike `with_single_template`, this keeps nothing of what the axes were: every symmetric limit
+    L becomes [-L, L]. Parts that the model lacks are passed over. Raises AvatarSettingsError.
+    """
+    axes = dict(configuration.axes)
+    present = set(configuration.parts)
+    for joint in joints:
+        if joint.part in present:
+            axes.update(to_multiple(joint))
+    return replace(configuration, axes=axes)
+
+
 def _with_limit(settings: AxisSettings, limit: float) -> AxisSettings:
     low, high = settings.low_rad, settings.high_rad
     if low == -high:
@@ -209,6 +237,15 @@ def _stiffest(shared: list[AxisSettings]) -> Drive | None:
 
 
 def _joint_problem(joint: SingleJoint, others: tuple[str, ...]) -> AvatarProblem | None:
+    if set(joint.limits_rad) == set(others) and (joint.shared_drive is None) != (not others):
+        return AvatarProblem(
+            "shared_drive",
+            f"The drives do not match the axes of {joint.part}: "
+            + (f"the one that {', '.join(others)} share is missing." if others else "it has one."),
+            value=None if others else "a shared drive",
+            valid="a drive" if others else "no shared drive",
+            remedy="Add it." if others else "Leave the shared drive out.",
+        )
     if set(joint.limits_rad) != set(others) or (joint.shared_drive is None) != (not others):
         return AvatarProblem(
             "limits_rad",

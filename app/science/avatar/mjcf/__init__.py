@@ -10,7 +10,7 @@ from app.science.avatar.mjcf.hinge_table import HingeTable, IndexArray, Simulati
 from app.science.avatar.mjcf.hinges import Hinge, hinges_of
 from app.science.avatar.mjcf.mjcf import NO_TORQUE_NM, build_mjcf, driven_axes
 from app.science.avatar.mjcf.model import AvatarModel, avatar_model
-from app.science.avatar.mjcf.scene import FLOOR, FLOOR_ONLY, Scene, scene_of
+from app.science.avatar.mjcf.scene import FLOOR, FLOOR_ONLY, LooseBox, Scene, scene_of
 
 __all__ = [
     "FLOOR",
@@ -21,6 +21,7 @@ __all__ = [
     "Hinge",
     "HingeTable",
     "IndexArray",
+    "LooseBox",
     "Scene",
     "SimulationError",
     "avatar_model",

@@ -34,6 +34,7 @@ class HingeTable:
         angles: (n,) indices into `qpos`.
         speeds: (n,) indices into `qvel`.
         position_targets: (n,) indices into `ctrl`; each is followed by the speed's target.
+        motors: (n,) rows of `actuator_force`.
         bodies: part -> body.
         joint_bodies: (22,) body that carries each joint of the skeleton; where the model lacks the
             joint's own part, the body of the part above it.
@@ -54,6 +55,7 @@ class HingeTable:
     angles: IndexArray
     speeds: IndexArray
     position_targets: IndexArray
+    motors: IndexArray
     bodies: dict[str, int]
     joint_bodies: IndexArray
     parent_bodies: IndexArray
@@ -75,6 +77,7 @@ def hinge_table(model: "mujoco.MjModel") -> HingeTable:
             "The model has no hips that can be positioned: build it with build_mjcf."
         )
     rows = np.array([joints[name] for name in names], dtype=np.int64)
+    motors = np.array([model.actuator(name).id for name in names], dtype=np.int64)
     joint_bodies = _joint_bodies(parts)
     placed = bodies[HIPS_TARGET] if HIPS_TARGET in bodies else parts["Hips"]
     root = joints.get("Hips")
@@ -84,9 +87,8 @@ def hinge_table(model: "mujoco.MjModel") -> HingeTable:
         joints=rows,
         angles=model.jnt_qposadr[rows].astype(np.int64),
         speeds=model.jnt_dofadr[rows].astype(np.int64),
-        position_targets=np.array(
-            [model.actuator_ctrladr[model.actuator(name).id] for name in names], dtype=np.int64
-        ),
+        position_targets=model.actuator_ctrladr[motors].astype(np.int64),
+        motors=motors,
         bodies=parts,
         joint_bodies=joint_bodies,
         parent_bodies=np.array([0 if above < 0 else joint_bodies[above] for above in PARENTS]),

@@ -19,12 +19,14 @@ The order of elements and attributes and the formatting of numbers are fixed.
 """
 
 from collections.abc import Iterable, Mapping
+from math import ceil
 from xml.sax.saxutils import quoteattr
 
 from app.science.avatar.body import (
     AXES_OF,
     NO_COLLISION,
     SCENE,
+    SCENE_BIT,
     Axis,
     Body,
     BodyError,
@@ -197,9 +199,10 @@ class _Model:
         world = root.add("worldbody")
         self._add_scene(world)
         self._add_body(world)
+        self._add_loose(world)
         contact = root.add("contact")
         parents = {name: part.parent for name, part in self._body.parts.items()}
-        for first, second in excluded_pairs(parents):
+        for first, second in excluded_pairs(parents, self._options.colliding):
             contact.add("exclude", body1=first, body2=second)
         if self._options.hips == "welded":
             root.add("equality").add(
@@ -224,6 +227,17 @@ class _Model:
                 **_masks(SCENE if box.solid else NO_COLLISION), priority=1, **solver,
             )  # fmt: skip
 
+    def _add_loose(self, world: Element) -> None:
+        """Add the boxes that move freely: after the avatar, whose hinges then stay the first."""
+        for box in self._scene.loose:
+            body = world.add("body", name=box.name, pos=box.center_m, gravcomp=1)
+            body.add("freejoint", name=box.name)
+            body.add(
+                "geom", name=box.name, type_="box", size=box.half_size_m, mass=box.mass_kg,
+                contype=SCENE_BIT, conaffinity=SCENE_BIT, priority=1,
+                solref=WALL_SOLREF, solimp=WALL_SOLIMP, friction=FRICTION,
+            )  # fmt: skip
+
     def _add_body(self, world: Element) -> None:
         place = self._body.parts["Hips"].joint_m
         welded = self._options.hips == "welded"
@@ -238,6 +252,7 @@ class _Model:
             elements[name] = element = above.add(
                 "body", name=name, mocap="true" if carried else None, pos=part.joint_m,
                 quat=None if turn == IDENTITY else turn,
+                gravcomp=1.0 if name in self._options.carried_parts else None,
             )  # fmt: skip
             if part.parent is None and welded:
                 element.add("freejoint", name="Hips")
@@ -255,7 +270,11 @@ class _Model:
         self._add_shapes(element, part)
 
     def _add_shapes(self, element: Element, part: BodyPart) -> None:
-        bits = collision_bits(part.name, self_collision=self._options.self_collision)
+        bits = collision_bits(
+            part.name,
+            self_collision=self._options.self_collision,
+            colliding=self._options.colliding,
+        )
         kind = self._colliders.of(part.name)
         if kind == "mesh" and part.name not in self._pieces:
             kind = "simple"
@@ -272,12 +291,15 @@ class _Model:
     def _add_motor(self, actuator: Element, axis: Axis) -> None:
         settings = self._settings[axis.name]
         torque = max(settings.max_torque_nm, NO_TORQUE_NM)
-        delay = self._options.longest_delay_s
-        samples = round(delay / TIMESTEP_S) + 1 if delay > 0.0 else None
+        own_delay_s = self._options.delays_s.get(axis.part, 0.0)
+        longest_s = self._options.longest_delay_s
+        own_samples = ceil(own_delay_s / TIMESTEP_S - 1e-9)
+        samples = round(longest_s / TIMESTEP_S) + own_samples + 1
+        has_buffer = longest_s > 0.0 or own_delay_s > 0.0
         actuator.add(
             "pid", name=axis.name, joint=axis.name, input="pos vel", kp=settings.kp, kv=settings.kd,
             posrange=(settings.low_rad, settings.high_rad), forcerange=(-torque, torque),
-            delay=None if samples is None else 0.0, nsample=samples,
+            delay=own_delay_s if has_buffer else None, nsample=samples if has_buffer else None,
         )  # fmt: skip
 
 

@@ -23,6 +23,7 @@ from app.science.avatar.configuration import (
     Colliders,
     Configuration,
     ModelOptions,
+    carried_parts,
     piece_problems,
 )
 from app.science.avatar.mjcf.mjcf import build_mjcf
@@ -97,19 +98,27 @@ def avatar_model(
     driven = set(configuration.parts)
     parts = [part for part in PART_NAMES if part in driven or not AXES_OF[part]]
     body = build_body(stature_m, segments_m=segments_m, parts=parts, figure=figure)
-    masses = body_masses(body, configuration.total_mass_kg, population=configuration.population)
+    masses = body_masses(
+        body,
+        configuration.total_mass_kg,
+        population=configuration.population,
+        relative=configuration.relative_masses,
+    )
     options = ModelOptions(
         hips=configuration.hips,
         gravity=configuration.gravity,
         self_collision=configuration.self_collision,
         longest_delay_s=longest_delay_s,
+        colliding=configuration.colliding,
+        delays_s=configuration.delays_s,
+        carried_parts=carried_parts(configuration.compliance),
     )
     colliders = Colliders(
         {part: configuration.collider_of(part) for part in body.parts},
         both=switchable_colliders or configuration.uses_pieces,
     )
     mjcf = build_mjcf(
-        body, masses, configuration.in_force, scene=scene, options=options, colliders=colliders
+        body, masses, configuration.motors, scene=scene, options=options, colliders=colliders
     )
     return AvatarModel(configuration, body, masses, mjcf)
 

@@ -1,4 +1,4 @@
-"""The surroundings of the avatar: immovable boxes and the floor.
+"""The surroundings of the avatar: immovable boxes, boxes that fall, and the floor.
 
 The world frame is the usual one: x right, y up, the participant faces -z, the floor is at zero;
 metres.
@@ -29,11 +29,28 @@ class SceneBox:
 
 
 @dataclass(frozen=True)
+class LooseBox:
+    """One box that moves freely, and weighs nothing until it is dropped.
+
+    In the model its body has `gravcomp` 1: it stays where it is. Setting that to zero drops it.
+
+    Attributes:
+        name: the name of its body, its joint and its geom.
+    """
+
+    name: str
+    center_m: Vector
+    half_size_m: Vector
+    mass_kg: float
+
+
+@dataclass(frozen=True)
 class Scene:
     """The boxes around an avatar, with unique names, and whether there is a floor."""
 
     boxes: tuple[SceneBox, ...] = ()
     floor: bool = True
+    loose: tuple[LooseBox, ...] = ()
 
 
 FLOOR_ONLY = Scene()

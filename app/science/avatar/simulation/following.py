@@ -18,12 +18,16 @@ Targets have one of two meanings:
   oscillate with growing amplitude. D is low-pass filtered with the time constant `YIELD_S`, slow
   compared with the motors and fast compared with a person.
 
-The deviation is known once per frame and can only be compensated without delay, so in `world` the
-added latency is applied to the poses, in a buffer here (`delay.DelayBuffer`), and not in the
-simulation. In both cases the hips are not delayed, and a latency of zero passes the pose through.
+Limbs with world targets (`limb_yield`) give way part by part, in either target space.
+
+The deviation is known once per frame and can only be compensated without delay, so in `world`, and
+for limbs with world targets, the added latency is applied to the poses, in a buffer here
+(`delay.DelayBuffer`), and not in the simulation. In all cases the hips are not delayed, and a
+latency of zero passes the pose through.
 """
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,7 +35,7 @@ import numpy as np
 from app.science.avatar.body import AXES
 from app.science.avatar.configuration import TargetSpace
 from app.science.avatar.simulation.simulation import AvatarState, PhysicsAvatar
-from app.science.avatar.targets import Fingers, TargetAngles, Targets
+from app.science.avatar.targets import Fingers, LimbYield, TargetAngles, Targets
 from app.science.delay import DelayBuffer
 from app.science.rotations import (
     IDENTITY,
@@ -61,7 +65,7 @@ class FollowedFrame:
 
     Attributes:
         targets: the targets of the participant's current pose in `local`; in `world` of the delayed
-            and compensated pose.
+            and compensated pose, and with limbs that have world targets of the delayed pose.
         state: the avatar at the frame's time.
     """
 
@@ -76,6 +80,7 @@ class Follower:
         avatar: the avatar, at its time zero or at rest.
         angles: the target angles, made with the limits and parts of the avatar's model.
         target_space: the meaning of the targets; see the module docstring.
+        world_limbs: the limbs with world targets; see `limb_yield`.
         delay_s: the added latency; `set_delay` changes it.
 
     Raises:
@@ -88,10 +93,14 @@ class Follower:
         angles: TargetAngles,
         *,
         target_space: TargetSpace = "local",
+        world_limbs: Collection[str] = (),
         delay_s: float = 0.0,
     ) -> None:
         self._avatar, self._angles = avatar, angles
-        self._poses = DelayBuffer(0.0) if target_space == "world" else None
+        self._trunk_yields = target_space == "world"
+        self._limbs = LimbYield(world_limbs) if world_limbs else None
+        gives_way = self._trunk_yields or self._limbs is not None
+        self._poses = DelayBuffer(0.0) if gives_way else None
         self._deviation: FloatArray = identity()
         self.set_delay(delay_s)
 
@@ -113,6 +122,10 @@ class Follower:
         angles = self._angles.follow(rotations, fingers).angles_rad
         self._avatar.start_at(position_m, rotations[0], angles)
         self._deviation = identity()
+        if self._limbs is not None:
+            self._limbs.forget()
+        if self._poses is not None:
+            self._poses.clear()
 
     def frame(
         self,
@@ -135,14 +148,20 @@ class Follower:
         pose = rotations
         if self._poses is not None:
             pose, fingers = self._delayed(self._poses, time_s, rotations, fingers)
-            pose[_LIMBS] = multiply(conjugate(self._deviation), pose[_LIMBS])
+            if self._trunk_yields:
+                pose[_LIMBS] = multiply(conjugate(self._deviation), pose[_LIMBS])
         elapsed_s = max(time_s - self._avatar.time_s, 0.0)
         targets = self._angles.follow(pose, fingers)
         self._avatar.set_hips(position_m, rotations[0])
-        self._avatar.set_targets(targets.angles_rad)
+        commands = targets.angles_rad
+        if self._limbs is not None:
+            commands = self._limbs.commands(commands)
+        self._avatar.set_targets(commands)
         self._avatar.step_to(time_s)
         state = self._avatar.state()
-        if self._poses is not None:
+        if self._limbs is not None:
+            self._limbs.note(targets.angles_rad, state.angles_rad, elapsed_s)
+        if self._trunk_yields:
             now = _deviation(targets.angles_rad, state.angles_rad)
             self._deviation = slerp(self._deviation, now, 1.0 - math.exp(-elapsed_s / YIELD_S))
         return FollowedFrame(targets, state)

@@ -48,3 +48,19 @@ def local_rotations(world: FloatArray, parents: IndexArray, rows: IndexArray) ->
         rotations[joint, 2] = aw * by + ax * bz - ay * bw - az * bx
         rotations[joint, 3] = aw * bz - ax * by + ay * bx - az * bw
     return rotations
+
+
+@compiled_fused
+def pose(
+    world: FloatArray, parents: IndexArray, rows: IndexArray,
+    qpos: FloatArray, hinges: IndexArray, command: FloatArray, columns: IndexArray, axes: int,
+) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    """Return local rotations (n, 4), and the angles and commands (axes,) of axes with a hinge.
+
+    Other axes have NaN.
+    """
+    angles, commands = np.full(axes, np.nan), np.full(axes, np.nan)
+    for row in range(columns.shape[0]):
+        angles[columns[row]] = qpos[hinges[row]]
+        commands[columns[row]] = command[row]
+    return local_rotations(world, parents, rows), angles, commands

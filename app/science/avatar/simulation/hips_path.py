@@ -98,5 +98,6 @@ def _pose(position_m: FloatArray, rotation: FloatArray) -> _Pose | None:
 
 
 def _angle_between(a: _Pose, b: _Pose) -> float:
-    dot = abs(sum(p * q for p, q in zip(a[1], b[1], strict=True)))
+    (aw, ax, ay, az), (bw, bx, by, bz) = a[1], b[1]
+    dot = abs(aw * bw + ax * bx + ay * by + az * bz)
     return 2.0 * acos(min(dot, 1.0))

@@ -80,6 +80,7 @@ FAILURE_RAD_S = 1000.0
 """Norm of all speeds above which the simulation counts as failed; random poses as targets cause up
 to 500."""
 _FAILURE_ANGLES = 1e5
+_AT_LIMIT = 1.0 - 1e-9
 _log = logging.getLogger(__name__)
 
 
@@ -121,7 +122,6 @@ class PhysicsAvatar:
         self.boxes = Boxes(self.model, self._soft_contacts.soften_all)
         self._steps = self._restored = self._ignored_inputs = self._limited = 0
         self._speeds: FloatArray | None = None
-        self._no_angles = np.full(len(AXES), np.nan)
         self._goal: FloatArray
         self._command: FloatArray
         self._reset_to(self._clamped(np.zeros(len(self._table.names))))
@@ -186,8 +186,8 @@ class PhysicsAvatar:
             speeds_rad_s: (91,) target speeds; None for the slope of the target angles.
         """
         angles = angles_rad[self._table.columns]
-        finite = np.isfinite(angles)
-        if not finite.all():
+        # A sum of squares is finite only if every term is, and quicker than checking each.
+        if not isfinite(np.dot(angles, angles)) and not (finite := np.isfinite(angles)).all():
             self._ignored_inputs += 1
             angles = np.where(finite, angles, self._goal)
         self._goal = angles
@@ -221,16 +221,12 @@ class PhysicsAvatar:
     def state(self) -> AvatarState:
         """Return the current pose, as joint rotations and as angles."""
         table, data = self._table, self.data
-        angles, command = self._no_angles.copy(), self._no_angles.copy()
-        angles[table.columns] = self._qpos[table.angles]
-        command[table.columns] = self._command
-        return AvatarState(
-            self.time_s,
-            data.xpos[table.joint_bodies[0]].copy(),
-            self._kernels.local_rotations(data.xquat, table.parent_bodies, table.joint_bodies),
-            angles,
-            command,
-        )
+        rotations, angles, command = self._kernels.pose(
+            data.xquat, table.parent_bodies, table.joint_bodies,
+            self._qpos, table.angles, self._command, table.columns, len(AXES),
+        )  # fmt: skip
+        root = data.xpos[table.joint_bodies[0]].copy()
+        return AvatarState(self.time_s, root, rotations, angles, command)
 
     def finger_rotations(self) -> FloatArray:
         """Return the current local rotations (30, 4) of the fingers, wxyz.
@@ -246,6 +242,25 @@ class PhysicsAvatar:
     def contacts(self) -> tuple[Contact, ...]:
         """Return the body's contacts in the last step."""
         return read_contacts(self.model, self.data)
+
+    def torques_nm(self) -> FloatArray:
+        """Return the motors' torques in the last step, in the order of `axis_names`."""
+        torques: FloatArray = self.data.actuator_force[self._table.motors]
+        return torques
+
+    def saturated(self) -> tuple[str, ...]:
+        """Return the axes whose motors were at their torque limits in the last step."""
+        limit = self.model.actuator_forcerange[self._table.motors, 1]
+        at_limit = np.abs(self.torques_nm()) >= limit * _AT_LIMIT
+        return tuple(name for name, one in zip(self._table.names, at_limit, strict=True) if one)
+
+    def stretched_rad(self) -> FloatArray:
+        """Return the angle by which each motor's spring is stretched, in the order of `axis_names`.
+
+        This is the command without any added latency minus the angle.
+        """
+        stretched: FloatArray = self._command - self._qpos[self._table.angles]
+        return stretched
 
     def _clamped(self, angles: FloatArray) -> FloatArray:
         ranges = self.switches.ranges_rad

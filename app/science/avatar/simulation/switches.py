@@ -26,7 +26,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body import COLLIDING, NO_COLLISION, SCENE_BIT, collision_bits
+from app.science.avatar.body import (
+    COLLIDING,
+    LAYER_OF,
+    LAYERS,
+    NO_COLLISION,
+    SCENE_BIT,
+    collision_bits,
+    layer_bit,
+)
 from app.science.avatar.configuration import AxisSettings, ColliderKind, RunningSettings
 from app.science.avatar.mjcf import FLOOR, NO_TORQUE_NM, HingeTable, SimulationError
 from app.science.rotations import FloatArray
@@ -49,11 +57,12 @@ class Switches:
         self._model, self._data, self._table = model, data, table
         self._limits: FloatArray = model.jnt_range[table.joints].copy()
         self.ranges_rad = self._limits.copy()
+        self._own_delays_s: FloatArray = model.actuator_delay.copy()
         self._held: dict[str, float] = {}
         self._goals: dict[str, float] = {}
-        self._layers: frozenset[frozenset[str]] = COLLIDING
         shapes = model.geom_contype[model.geom_bodyid > 0]
         self._self_collision = bool(np.any(shapes > SCENE_BIT))
+        self._layers = self._built_layers()
         self._touching = dict.fromkeys(table.bodies, True)
         self._is_piece = model.geom_type == int(mjtGeom.mjGEOM_MESH)
         self._kinds: dict[str, ColliderKind] = {
@@ -62,14 +71,16 @@ class Switches:
 
     @property
     def longest_delay_s(self) -> float:
-        """Return the longest latency that this model can add."""
-        samples = min(self._model.actuator_history[:, 0].tolist(), default=0)
-        return max(samples - 1, 0) * float(self._model.opt.timestep)
+        """Return the longest latency that this model can add to the delays of its own."""
+        samples = self._model.actuator_history[:, 0] - 1
+        spare_s = np.maximum(samples, 0) * float(self._model.opt.timestep) - self._own_delays_s
+        return max(round(float(spare_s.min()), 9), 0.0) if spare_s.size else 0.0
 
     @property
     def delay_s(self) -> float:
         """Return the latency that is currently added."""
-        return float(self._model.actuator_delay.max(initial=0.0))
+        added: FloatArray = self._model.actuator_delay - self._own_delays_s
+        return float(added.max(initial=0.0))
 
     @property
     def held(self) -> frozenset[str]:
@@ -135,6 +146,8 @@ class Switches:
     def set_delay(self, delay_s: float) -> None:
         """Add this latency to all hinges from now on; zero bypasses the buffer.
 
+        Parts that lag behind the others by the configuration keep their own delay beside it.
+
         Raises:
             SimulationError: below zero, or more than the model was built for.
         """
@@ -143,7 +156,7 @@ class Switches:
                 f"A delay of {delay_s} s is not possible: give 0 to {self.longest_delay_s:g} s, or"
                 " build the model with a larger longest_delay_s."
             )
-        self._model.actuator_delay[:] = delay_s
+        self._model.actuator_delay[:] = self._own_delays_s + delay_s
 
     def set_gravity(self, *, on: bool) -> None:
         """Switch gravity on or off."""
@@ -262,6 +275,21 @@ class Switches:
         kinds: tuple[ColliderKind, ...] = ("simple", "mesh")
         masks = self._model.geom_contype
         return next((kind for kind in kinds if masks[self._shapes(part, kind)].any()), "none")
+
+    def _built_layers(self) -> frozenset[frozenset[str]]:
+        """Return the pairs of layers that collide in the model as it was built.
+
+        The standard pairs for layers without a shape, or if no parts collide with each other.
+        """
+        found = set(COLLIDING)
+        model = self._model
+        for part, body in self._table.bodies.items():
+            own = (model.geom_bodyid == body) & (model.geom_contype > SCENE_BIT)
+            for partners in model.geom_conaffinity[own][:1].tolist():
+                for other in LAYERS:
+                    pair = frozenset((LAYER_OF[part], other))
+                    (found.add if partners & layer_bit(other) else found.discard)(pair)
+        return frozenset(found)
 
     def _set_masks(self, part: str) -> None:
         bits = collision_bits(part, self_collision=self._self_collision, colliding=self._layers)

@@ -6,6 +6,7 @@ the motors of an avatar aimed at, the reference of joint errors.
 """
 
 from app.science.avatar.targets.hinge_reference import HingeReference
+from app.science.avatar.targets.limb_yield import LimbYield
 from app.science.avatar.targets.targets import (
     Fingers,
     TargetAngles,
@@ -17,6 +18,7 @@ from app.science.avatar.targets.targets import (
 __all__ = [
     "Fingers",
     "HingeReference",
+    "LimbYield",
     "TargetAngles",
     "Targets",
     "finger_rotations",

@@ -24,7 +24,7 @@ Target angles may lie beyond the limits. `unclamped_rad` is unclamped, `angles_r
 comes as near as it can, and `residual_rad` is the angle that remains, before any clamping.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -43,9 +43,22 @@ rounding is a tenth of it: an elbow held straight, at its limit, is not clipped 
 frame."""
 _CHUNK_FRAMES = 512
 """Frames of a recording per call of the compiled code, which does not let other threads run."""
-_FINGER_ROWS = np.array([PART_NAMES.index(name) for name in FINGER_PARTS])
+
+
+def _runs(rows: Sequence[int]) -> Iterator[tuple[slice, slice]]:
+    """Yield slices of consecutive rows, and of the positions that these have among `rows`."""
+    first = 0
+    for at in range(1, len(rows) + 1):
+        if at == len(rows) or rows[at] != rows[at - 1] + 1:
+            yield slice(rows[first], rows[at - 1] + 1), slice(first, at)
+            first = at
+
+
 _ROW_OF = {name: row for row, name in enumerate(PART_NAMES)}
-_JOINT_ROWS = np.array([PART_NAMES.index(name) for name in JOINT_INDEX])
+_JOINT_RUNS = tuple(_runs([PART_NAMES.index(name) for name in JOINT_INDEX]))
+_FINGER_RUNS = tuple(_runs([PART_NAMES.index(name) for name in FINGER_PARTS]))
+"""Which rows of all parts are which joints and fingers, as slices, which are copied fastest."""
+_RESTARTS, _GOES_ON = np.array([True]), np.array([False])
 _DIRECTIONS: FloatArray = np.array([axis.direction for axis in AXES])
 # Every finger part has one axis; those at the knuckles have a second one.
 _FIRST_AXES = np.array([AXES.index(AXES_OF[part][0]) for part in FINGER_PARTS])
@@ -194,7 +207,9 @@ class TargetAngles:
             TargetError: a shape does not fit.
         """
         given = _at(fingers, np.newaxis)
-        target = self._follow(rotations[np.newaxis], given, np.array([self._restart]))
+        target = self._follow(
+            rotations[np.newaxis], given, _RESTARTS if self._restart else _GOES_ON
+        )
         return Targets(target.angles_rad[0], target.unclamped_rad[0], target.residual_rad[0])
 
     def _follow(
@@ -208,9 +223,11 @@ class TargetAngles:
             raise TargetError(f"Rotations {rotations.shape[1:]} are not ({JOINT_COUNT}, 4).")
         local = np.empty((count, len(PART_NAMES), 4))
         local[:] = self._at_rest
-        local[:, _JOINT_ROWS] = rotations
+        for into, of in _JOINT_RUNS:
+            local[:, into] = rotations[:, of]
         if isinstance(fingers, np.ndarray):
-            local[:, _FINGER_ROWS] = fingers
+            for into, of in _FINGER_RUNS:
+                local[:, into] = fingers[:, of]
         elif fingers is not None:
             for name, q in fingers.items():
                 local[:, _ROW_OF[name]] = q

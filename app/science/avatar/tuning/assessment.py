@@ -36,10 +36,10 @@ def assess(
     stature_m: float,
     options: TuningOptions | None = None,
     *,
-    figure: Figure | None = None,
     wall_s: Callable[[], float],
     progress: Callable[[TuningProgress], None] = lambda _: None,
     cancelled: Callable[[], bool] = lambda: False,
+    figure: Figure | None = None,
 ) -> Assessment:
     """Test the gains of each free axis by a step of its target on the whole body.
 

@@ -45,8 +45,7 @@ class AxisAttempts:
             self._failure = outcome
             return
         self._failure = None
-        rule = HEURISTICS[self._options.heuristic]
-        self.gains = rule.gains(outcome.found, _aimed_hz(self._axis, outcome))
+        self.gains = gains_of(self._axis, outcome, self._options)
         self._attempts.append(_Attempt(outcome, self.gains))
 
     def judge(self, name: str, step: StepFigures, clearance: float) -> None:
@@ -99,6 +98,11 @@ class AxisAttempts:
     def _objection(self, step: StepFigures, clearance: float) -> str | None:
         accepted = self._options.accepted_overshoot_percent
         return objection(step, clearance, accepted_overshoot_percent=accepted)
+
+
+def gains_of(axis: str, outcome: Experiment, options: TuningOptions) -> Gains:
+    """Return the gains that the chosen rule gives for an experiment on an axis."""
+    return HEURISTICS[options.heuristic].gains(outcome.found, _aimed_hz(axis, outcome))
 
 
 def _aimed_hz(axis: str, outcome: Experiment) -> float:

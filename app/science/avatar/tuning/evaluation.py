@@ -50,6 +50,23 @@ def jump_of(settings: AxisSettings) -> Jump:
     return Jump(middle - half, middle + half)
 
 
+@dataclass(frozen=True, eq=False)
+class StepResponse:
+    """The recorded step response of one axis.
+
+    Attributes:
+        jump: the step of the target.
+        start_rad: the angle at the jump.
+        angles_rad: (N,) the angle after each time step since then.
+        speeds_rad_s: (N,) likewise its speed.
+    """
+
+    jump: Jump
+    start_rad: float
+    angles_rad: FloatArray
+    speeds_rad_s: FloatArray
+
+
 class Trial:
     """Step responses of one body with its gains; `names` are the axes that can be tested."""
 
@@ -81,6 +98,12 @@ class Trial:
 
     def step(self, axis: str) -> StepFigures:
         """Return the figures of one axis' step response; this method is thread-safe."""
+        found = self.response(axis)
+        target = found.jump.target_rad
+        return step_figures(found.angles_rad, found.start_rad, target, TIMESTEP_S)
+
+    def response(self, axis: str) -> StepResponse:
+        """Return one axis' step response; this method is thread-safe."""
         row = self.names.index(axis)
         jump = jump_of(self._settings[axis])
         data: mujoco.MjData = self._mujoco.MjData(self._model)
@@ -92,8 +115,8 @@ class Trial:
             self._mujoco.mj_step(self._model, data, nstep=round(_PREPARE_S / TIMESTEP_S))
         start = float(data.qpos[row])
         data.ctrl[2 * row] = jump.target_rad
-        angles = self._angles_after(data, row)
-        return step_figures(angles, start, jump.target_rad, TIMESTEP_S)
+        angles, speeds = self._after(data, row)
+        return StepResponse(jump, start, angles, speeds)
 
     def clearance(self, axis: str) -> float:
         """Return the margin of an axis' damping against chatter: 2 J / (kd h), stable above 1.
@@ -114,7 +137,7 @@ class Trial:
         inertias: FloatArray = 1.0 / np.diagonal(np.linalg.inv(inertia))
         return inertias
 
-    def _angles_after(self, data: "mujoco.MjData", row: int) -> FloatArray:
+    def _after(self, data: "mujoco.MjData", row: int) -> tuple[FloatArray, FloatArray]:
         from mujoco import rollout  # one call for many steps lets other threads run meanwhile
 
         kind = self._mujoco.mjtState.mjSTATE_FULLPHYSICS
@@ -123,6 +146,6 @@ class Trial:
         controls = data.ctrl[np.newaxis, np.newaxis].copy()
         steps = round(_RECORD_S / TIMESTEP_S)
         states, _ = rollout.rollout(self._model, data, initial, controls, nstep=steps)
-        # A state begins with the time, followed by the angles.
-        angles: FloatArray = states[0, :, 1 + row].copy()
-        return angles
+        # A state begins with the time, followed by the angles and the speeds.
+        first_speed = 1 + self._model.nq
+        return states[0, :, 1 + row].copy(), states[0, :, first_speed + row].copy()

@@ -1,14 +1,20 @@
-"""Run the relay experiment on one axis of a body, in each pose that matters for the axis."""
+"""Run the experiments on one axis of a body, in each pose that matters for the axis.
+
+The laboratory has the body only to simulate it. What the experiments are told of an axis is its
+torque limit and how fast it shall respond, as a natural frequency (`natural_hz`); all else is
+measured.
+"""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 from app.science.avatar.body import FINGER_PARTS, Body, BodyMasses
 from app.science.avatar.configuration import AxisSettings
-from app.science.avatar.mjcf import NATURAL_HZ, Hinge, hinges_of
-from app.science.avatar.tuning.plant import axis_plant, poses_of, without_shapes
-from app.science.avatar.tuning.relay import NoOscillation, relay_for, run_relay
+from app.science.avatar.mjcf import NATURAL_HZ
+from app.science.avatar.tuning.plant import AxisPlant, axis_plant, poses_of, without_shapes
+from app.science.avatar.tuning.ramp import Push, chosen_push, ramp
+from app.science.avatar.tuning.relay import NoOscillation, run_relay
 from app.science.avatar.tuning.results import Experiment, TuningOptions
 
 RELAY_PER_NATURAL: Final = 1.083
@@ -18,7 +24,11 @@ RETRY_SHARE: Final = 0.8
 
 
 def natural_hz(axis: str) -> float:
-    """Return the natural frequency of an axis in the default configuration, where tuning starts."""
+    """Return the natural frequency that an axis shall have, chosen for each body part.
+
+    Light parts have to be fast, since a limb's own weight deflects it by an angle of about
+    g / (w^2 l); the trunk's has to stay below the rate at which its joints chatter (`gains`).
+    """
     part = axis[:-1]
     if part in FINGER_PARTS:
         return NATURAL_HZ["Finger"]
@@ -27,13 +37,12 @@ def natural_hz(axis: str) -> float:
 
 @dataclass(frozen=True)
 class Laboratory:
-    """One body for relay experiments; several threads may use it.
+    """One body for experiments; several threads may use it.
 
     Attributes:
         body: the body without shapes; see `without_shapes`.
         masses: the masses of its parts.
-        settings: the settings of every axis, in force.
-        hinges: the hinges of every axis; their inertia determines the relay's torque.
+        settings: the settings of every axis, in force; their limits bound the torques.
         options: the options of the tuning.
         wall_s: a monotonic clock.
         cancelled: function that returns whether the tuning was cancelled.
@@ -42,32 +51,41 @@ class Laboratory:
     body: Body
     masses: BodyMasses
     settings: Mapping[str, AxisSettings]
-    hinges: Mapping[str, Hinge]
     options: TuningOptions
     wall_s: Callable[[], float]
     cancelled: Callable[[], bool]
 
     def experiment(self, axis: str, attempt: int) -> Experiment | NoOscillation:
-        """Run an attempt on an axis and return the experiment in the pose with the larger inertia.
+        """Run an attempt on an axis, in the pose that is harder to move.
 
         `attempt` counts from 1; each aims at a lower frequency than the previous one.
         """
-        aimed_hz = natural_hz(axis) * RETRY_SHARE ** (attempt - 1)
-        chosen = relay_for(self.hinges[axis].inertia_kg_m2, RELAY_PER_NATURAL * aimed_hz)
-        relay = replace(
-            chosen,
-            longest_s=self.options.longest_s,
-            longest_wall_s=self.options.longest_wall_s,
-        )
-        best: Experiment | None = None
+        heaviest: tuple[float, Experiment] | None = None
         for pose in poses_of(axis):
             plant = axis_plant(self.body, self.masses, self.settings, axis, pose=pose)
+            push = self._push(plant, axis, attempt)
+            if isinstance(push, NoOscillation):
+                return push
+            relay = push.relay(
+                longest_s=self.options.longest_s, longest_wall_s=self.options.longest_wall_s
+            )
             found = run_relay(plant, relay, wall_s=self.wall_s, cancelled=self.cancelled)
             if isinstance(found, NoOscillation):
                 return found
-            if best is None or found.inertia_kg_m2 > best.found.inertia_kg_m2:
-                best = Experiment(relay, found, pose, aimed_hz)
-        return best if best is not None else NoOscillation("there is no pose to measure it in")
+            if heaviest is None or found.inertia_kg_m2 > heaviest[0]:
+                aimed_hz = push.relay_hz / RELAY_PER_NATURAL
+                one = Experiment(push, relay, found, pose, aimed_hz)
+                heaviest = found.inertia_kg_m2, one
+        return heaviest[1] if heaviest else NoOscillation("there is no pose to measure it in")
+
+    def _push(self, plant: AxisPlant, axis: str, attempt: int) -> Push | NoOscillation:
+        limit_nm = self.settings[axis].max_torque_nm
+        eased = RETRY_SHARE ** (attempt - 1)
+        chosen_nm = self.options.relay_torque_of(axis)
+        if chosen_nm is not None:
+            return chosen_push(plant, limit_nm, chosen_nm, share=eased**2)
+        relay_hz = RELAY_PER_NATURAL * natural_hz(axis) * eased
+        return ramp(plant, limit_nm, 1.0 / (4.0 * relay_hz))
 
 
 def laboratory(
@@ -80,5 +98,4 @@ def laboratory(
     cancelled: Callable[[], bool],
 ) -> Laboratory:
     """Return a `Laboratory` for a body."""
-    hinges = hinges_of(body, masses)
-    return Laboratory(without_shapes(body), masses, settings, hinges, options, wall_s, cancelled)
+    return Laboratory(without_shapes(body), masses, settings, options, wall_s, cancelled)

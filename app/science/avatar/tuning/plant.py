@@ -57,13 +57,14 @@ class AxisPlant:
             disable.mjDSBL_CONTACT | disable.mjDSBL_LIMIT | disable.mjDSBL_ACTUATION
         )
         self._data = mujoco.MjData(model)
+        self._own_damping = float(model.dof_damping[0])
         self._step = mujoco.mj_step
         self._reset = mujoco.mj_resetData
 
     def prepare(self, step_s: float, damping_nm_s: float) -> None:
-        """Reset to the start, at rest, with this time step and this damping of the hinge."""
+        """Reset to the start, at rest, with this time step and damping added to the hinge's own."""
         self._model.opt.timestep = step_s
-        self._model.dof_damping[0] = damping_nm_s
+        self._model.dof_damping[0] = self._own_damping + damping_nm_s
         self._reset(self._model, self._data)
         self._torque, self._angle = self._data.qfrc_applied, self._data.qpos
 
@@ -82,6 +83,18 @@ def axis_plant(
     *,
     pose: Pose = "straight",
 ) -> AxisPlant:
+    """Return the plant of a single free axis; it takes the same arguments as `axis_model`."""
+    return AxisPlant(axis_model(body, masses, settings, axis, pose=pose))
+
+
+def axis_model(
+    body: Body,
+    masses: BodyMasses,
+    settings: Mapping[str, AxisSettings],
+    axis: str,
+    *,
+    pose: Pose = "straight",
+) -> "mujoco.MjModel":
     """Compile the model of a single free axis.
 
     Args:
@@ -102,4 +115,4 @@ def axis_plant(
             bent = pose == "bent" and name in BENDING_AXES
             single[name] = own.locked_at(pi / 2.0 if bent else own.rest_rad)
     text = build_mjcf(body, masses, single, scene=_EMPTY_SCENE, options=_OPTIONS)
-    return AxisPlant(mujoco.MjModel.from_xml_string(text))
+    return mujoco.MjModel.from_xml_string(text)

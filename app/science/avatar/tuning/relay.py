@@ -13,25 +13,21 @@ a and Pu are measured; they give the ultimate gain, with hysteresis taken into a
 
 and the inertia. The angle of a body that a constant torque drives back and forth follows parabolas,
 on which a = d Pu^2 / (32 I): the inertia is the dependable result, accurate to a few per cent for
-any d, c and e. Ku and Pu depend on all three. So d, c and e are chosen by a rule, `relay_for`, and
-recorded.
+any d, c and e. Ku and Pu depend on all three. So d, c and e are chosen by an experiment of their
+own (`ramp`), and recorded.
 
 Source: Astrom and Hagglund (1984), Automatic tuning of simple regulators with specifications on
-phase and amplitude margins, Automatica 20(5), 645-651. The rule of choice is ours.
+phase and amplitude margins, Automatica 20(5), 645-651.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import asin, cos, pi, radians, sqrt, tan
+from math import pi, radians, sqrt
 from typing import Final
 
 from app.science.avatar.tuning.plant import AxisPlant
 
 HYSTERESIS_RAD: Final = radians(2.0)
-AMPLITUDE_HYSTERESES: Final = 4.0
-"""The intended amplitude, in units of the hysteresis: 8 degrees."""
-STEPS_PER_CYCLE: Final = 200
-"""Time steps of the simulation in each cycle of the relay."""
 _STEADY: Final = 0.01
 _CHECK_EVERY = 256
 
@@ -41,9 +37,8 @@ class RelaySettings:
     """The settings of one experiment; they are recorded with its result.
 
     Attributes:
-        torque_nm: the torque d, in either direction. It is the experiment's own and not bounded by
-            the motor of the axis.
-        damping_nm_s: the damping c of the hinge, in place of the body's own.
+        torque_nm: the torque d, in either direction.
+        damping_nm_s: the damping c that the motor adds to the hinge's own.
         hysteresis_rad: the hysteresis e of the relay.
         warm_up_cycles: number of first cycles that are not measured.
         cycles: number of cycles that are measured; they must agree within 1 %, or the measurement
@@ -73,6 +68,7 @@ class Oscillation:
         period_s: the period Pu.
         ultimate_gain_nm_rad: the ultimate gain Ku.
         inertia_kg_m2: the moment of inertia I.
+        peak_torque_nm: the greatest torque of the motor, relay and damping together.
         simulated_s: duration of the experiment in simulated time.
     """
 
@@ -80,6 +76,7 @@ class Oscillation:
     period_s: float
     ultimate_gain_nm_rad: float
     inertia_kg_m2: float
+    peak_torque_nm: float
     simulated_s: float
 
 
@@ -88,21 +85,6 @@ class NoOscillation:
     """The reason why an experiment found no limit cycle."""
 
     reason: str
-
-
-def relay_for(inertia_kg_m2: float, frequency_hz: float) -> RelaySettings:
-    """Choose torque and damping so that a body of this inertia oscillates at this frequency.
-
-    The describing function is solved for them at an amplitude of four hystereses.
-    """
-    omega = 2.0 * pi * frequency_hz
-    lag = asin(1.0 / AMPLITUDE_HYSTERESES)
-    amplitude = AMPLITUDE_HYSTERESES * HYSTERESIS_RAD
-    return RelaySettings(
-        torque_nm=pi * amplitude / 4.0 * inertia_kg_m2 * omega**2 / cos(lag),
-        damping_nm_s=omega * inertia_kg_m2 * tan(lag),
-        step_s=1.0 / (STEPS_PER_CYCLE * frequency_hz),
-    )
 
 
 def run_relay(
@@ -125,19 +107,23 @@ def run_relay(
     plant.prepare(settings.step_s, settings.damping_nm_s)
     cycles = _Cycles(settings)
     torque, edge = settings.torque_nm, settings.hysteresis_rad
-    applied, ahead, angle = torque, 0.0, 0.0
+    before_last = last = ahead = angle = 0.0
     for step in range(round(settings.longest_s / settings.step_s)):
-        previous, previous_ahead = angle, ahead
-        ahead = plant.step(applied)
-        # The integrator's angles are half a step ahead of their time.
-        angle = (previous_ahead + ahead) / 2.0
+        # Under a constant torque the angle's second difference is constant: so the next angle is
+        # known, and a crossing within the step can be met by the mean torque of its two pieces.
+        coming = (ahead + 3.0 * ahead - 3.0 * last + before_last) / 2.0
+        crossed = edge if torque > 0.0 else -edge
         applied = torque
-        if (angle > edge) if torque > 0.0 else (angle < -edge):
-            # The crossing lies between two steps: compensate for the torque applied since then.
-            crossed = edge if torque > 0.0 else -edge
-            fraction = (crossed - previous) / (angle - previous)
+        crossing = coming > edge if torque > 0.0 else coming < -edge
+        if crossing:
+            fraction = min(max((crossed - angle) / (coming - angle), 0.0), 1.0)
+            applied = torque * (2.0 * fraction - 1.0)
             torque = -torque
-            applied = torque * (3.0 - 2.0 * fraction)
+        before_last, last, ahead = last, ahead, plant.step(applied)
+        # The integrator's angles are half a step ahead of their time.
+        previous, angle = angle, (last + ahead) / 2.0
+        if crossing:
+            cycles.switched((angle - previous) / settings.step_s)
             if torque < 0.0 and cycles.ended((step + fraction) * settings.step_s):
                 return cycles.oscillation((step + 1) * settings.step_s)
         cycles.add(angle)
@@ -168,6 +154,12 @@ class _Cycles:
         self._last_s: float | None = None
         self._amplitudes: list[float] = []
         self._periods: list[float] = []
+        self._peak_nm = 0.0
+
+    def switched(self, speed_rad_s: float) -> None:
+        """Record the motor's torque just after a switch: relay and damping brake together."""
+        braking = self._settings.torque_nm + self._settings.damping_nm_s * abs(speed_rad_s)
+        self._peak_nm = max(self._peak_nm, braking)
 
     def add(self, angle: float) -> None:
         """Extend the extremes of the current cycle by this angle."""
@@ -197,6 +189,7 @@ class _Cycles:
             period_s=period,
             ultimate_gain_nm_rad=4.0 * torque / (pi * sqrt(amplitude**2 - edge**2)),
             inertia_kg_m2=torque * period**2 / (32.0 * amplitude),
+            peak_torque_nm=self._peak_nm,
             simulated_s=simulated_s,
         )
 

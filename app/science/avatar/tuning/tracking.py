@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.avatar.body import AXES, AXIS_NAMES, PARENT_OF, PART_NAMES, Figure
-from app.science.avatar.configuration import Configuration
+from app.science.avatar.configuration import Configuration, world_limbs
 from app.science.avatar.mjcf import FLOOR_ONLY, Scene, avatar_model
 from app.science.avatar.tuning.results import TuningError
 from app.science.rotations import FloatArray
@@ -62,21 +62,26 @@ class Tracking:
 
     Attributes:
         rms_deg: driven axis -> RMS of the clamped target minus the angle.
+        rms_torque_nm: driven axis -> RMS of its motor's torque at the end of each frame, N m.
         clamped: errors of all driven axes and frames against the clamped target.
         free, touching: the same for the samples without and with contact.
         unclamped: errors against the target before clamping.
         clipped_share: share of the samples whose target the limits changed.
+        saturated: axis -> share of the frames in which its motor is at its torque limit, for axes
+            where it ever is.
         touches: pair in contact -> share of the frames, such as `RightToes, floor`; the most
             frequent one first.
         frames: number of frames that were compared.
     """
 
     rms_deg: Mapping[str, float]
+    rms_torque_nm: Mapping[str, float]
     clamped: Spread
     free: Spread
     touching: Spread
     unclamped: Spread
     clipped_share: float
+    saturated: Mapping[str, float]
     touches: Mapping[str, float]
     frames: int
 
@@ -130,7 +135,12 @@ def track(
     built = avatar_model(configuration, stature_m, figure=figure, scene=scene, longest_delay_s=0.0)
     avatar = PhysicsAvatar(built.mjcf)
     angles = TargetAngles(configuration.in_force, built.body.parts)
-    follower = Follower(avatar, angles, target_space=configuration.target_space)
+    follower = Follower(
+        avatar,
+        angles,
+        target_space=configuration.target_space,
+        world_limbs=world_limbs(configuration.compliance),
+    )
     follower.start(positions_m[0], rotations[0])
     record = _Record(count - 1)
     for frame in range(1, count):
@@ -140,6 +150,8 @@ def track(
             result.targets.unclamped_rad,
             result.state.angles_rad,
             avatar.contacts(),
+            avatar.saturated(),
+            avatar.torques_nm(),
         )
     return record.tracking(skipped, round(CONTACT_HOLD_S * rate_hz), avatar.axis_names)
 
@@ -179,6 +191,8 @@ class _Record:
         self._unclamped = np.empty_like(self._clamped)
         self._touching = np.zeros(self._clamped.shape, dtype=np.bool_)
         self._touches: list[frozenset[str]] = []
+        self._saturated: list[frozenset[str]] = []
+        self._torques_nm: list[FloatArray] = []
 
     def add(
         self,
@@ -186,6 +200,8 @@ class _Record:
         unclamped_rad: FloatArray,
         actual_rad: FloatArray,
         contacts: Iterable["Contact"],
+        saturated: Iterable[str],
+        torques_nm: FloatArray,
     ) -> None:
         frame, touching = (
             len(self._touches),
@@ -197,6 +213,8 @@ class _Record:
             for part in (contact.part, contact.other):
                 if part in _AXES_ABOVE:
                     self._touching[frame] |= _AXES_ABOVE[part]
+        self._saturated.append(frozenset(saturated))
+        self._torques_nm.append(torques_nm)
         self._touches.append(frozenset(f"{contact.part}, {contact.other}" for contact in touching))
 
     def tracking(self, skipped: int, hold_frames: int, names: tuple[str, ...]) -> Tracking:
@@ -204,14 +222,15 @@ class _Record:
         clamped = self._clamped[skipped:, columns]
         unclamped = self._unclamped[skipped:, columns]
         touching = _extended(self._touching[:, columns], hold_frames)[skipped:]
-        rms = np.degrees(np.sqrt(np.mean(clamped**2, axis=0)))
         return Tracking(
-            rms_deg=MappingProxyType(dict(zip(names, rms.tolist(), strict=True))),
+            rms_deg=_by_axis(names, np.degrees(_rms(clamped))),
+            rms_torque_nm=_by_axis(names, _rms(np.array(self._torques_nm)[skipped:])),
             clamped=_spread(clamped),
             free=_spread(clamped[~touching]),
             touching=_spread(clamped[touching]),
             unclamped=_spread(unclamped),
             clipped_share=float(np.mean(clamped != unclamped)),
+            saturated=MappingProxyType(_shares(self._saturated[skipped:])),
             touches=MappingProxyType(_shares(self._touches[skipped:])),
             frames=clamped.shape[0],
         )
@@ -238,6 +257,16 @@ def _extended(touching: npt.NDArray[np.bool_], frames: int) -> npt.NDArray[np.bo
     return longer
 
 
+def _rms(values: FloatArray) -> FloatArray:
+    """Return the root mean square over the frames (frames, axes) of each axis, (axes,)."""
+    rms: FloatArray = np.sqrt(np.mean(values**2, axis=0))
+    return rms
+
+
+def _by_axis(names: tuple[str, ...], values: FloatArray) -> Mapping[str, float]:
+    return MappingProxyType(dict(zip(names, values.tolist(), strict=True)))
+
+
 def _spread(errors_rad: FloatArray) -> Spread:
     if errors_rad.size == 0:
         return Spread(nan, nan, 0)
@@ -245,10 +274,11 @@ def _spread(errors_rad: FloatArray) -> Spread:
     return Spread(degrees(mean), degrees(p95), errors_rad.size)
 
 
-def _shares(touches: list[frozenset[str]]) -> dict[str, float]:
+def _shares(frames: list[frozenset[str]]) -> dict[str, float]:
+    """Return name -> share of the frames that have it, the most frequent one first."""
     counts: dict[str, int] = {}
-    for frame in touches:
-        for touch in frame:
-            counts[touch] = counts.get(touch, 0) + 1
+    for names in frames:
+        for name in names:
+            counts[name] = counts.get(name, 0) + 1
     ordered = sorted(counts.items(), key=lambda item: (-item[1], item[0]))
-    return {touch: count / len(touches) for touch, count in ordered}
+    return {name: count / len(frames) for name, count in ordered}

@@ -1,28 +1,39 @@
 """Tune a whole avatar: measure each axis, compute gains, test them, and retry or flag what fails.
 
-1. A relay makes every free axis oscillate, with all others rigid (`experiments`).
+1. A growing torque finds out how hard each free axis is to move (`ramp`), and a relay of that
+   torque makes it oscillate, with all others rigid (`experiments`).
 2. A rule computes gains from the oscillation (`heuristics`).
 3. The whole body gets all the gains, and the step response of each axis is tested (`evaluation`).
 4. Axes with an objection (`objection`) are retried with a weaker relay, which means lower gains.
    After the last attempt the best gains are kept and the axis is flagged with the reason.
 5. If anything changed since an axis was tested, the whole body is tested once more.
+6. An axis whose torque the user chose is also tuned by the ramp, once, and tested with these gains,
+   for comparison only (`chosen`): the torque decides how stiff an axis becomes.
 
 Torque limits and joint limits stay unchanged. With `mirror` only the left side is measured; both
-sides are tested. An axis whose left counterpart is locked or missing is tuned itself.
+sides are tested. An axis whose left counterpart is locked, missing or not chosen is tuned itself.
+
+Axes that the options do not choose are neither measured nor tested and keep their gains; they
+drive the body in the tests of the others.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from app.science.avatar.body import Figure, mirrored_name
 from app.science.avatar.configuration import AxisSettings, Configuration
 from app.science.avatar.mjcf import avatar_model
-from app.science.avatar.tuning.attempts import AxisAttempts
+from app.science.avatar.tuning.attempts import AxisAttempts, gains_of
 from app.science.avatar.tuning.axis_pool import AxisPool
+from app.science.avatar.tuning.chosen import ByRamp, with_choice
 from app.science.avatar.tuning.evaluation import Trial
 from app.science.avatar.tuning.experiments import laboratory
+from app.science.avatar.tuning.ramp import MOTOR_SHARE
+from app.science.avatar.tuning.relay import NoOscillation
 from app.science.avatar.tuning.results import (
     AxisTuning,
+    TuningError,
+    TuningJournal,
     TuningOptions,
     TuningProgress,
     TuningReport,
@@ -39,8 +50,9 @@ def tune(
     wall_s: Callable[[], float],
     progress: Callable[[TuningProgress], None] = lambda _: None,
     cancelled: Callable[[], bool] = lambda: False,
+    journal: TuningJournal | None = None,
 ) -> TuningReport:
-    """Find gains for every free axis; the same input gives the same gains.
+    """Find gains for every chosen free axis; the same input gives the same gains.
 
     Args:
         configuration: supplies mass, locks, limits and torque limits; axes that are locked or do
@@ -51,13 +63,18 @@ def tune(
         wall_s: a monotonic clock in seconds, such as `time.monotonic`.
         progress: function that is called after each axis.
         cancelled: function that is called repeatedly and returns whether to stop.
+        journal: keeps the results; a tuning that was interrupted goes on from them, with the same
+            gains in the end as one that was not.
 
     Raises:
         BodyError: the body cannot be built.
+        TuningError: no chosen axis is free, a relay torque is given for an axis that is not
+            measured, or one for all axes is more than any may take.
         TuningCancelled: `cancelled` returned true.
     """
     chosen = TuningOptions() if options is None else options
-    tuning = _Tuning(configuration, stature_m, figure, chosen, wall_s, progress, cancelled)
+    pool = AxisPool(chosen.workers, progress, cancelled, journal)
+    tuning = _Tuning(configuration, stature_m, figure, chosen, wall_s, pool, cancelled)
     started_s = wall_s()
     tuning.run()
     axes = tuning.results()
@@ -83,7 +100,7 @@ class _Tuning:
         figure: Figure | None,
         options: TuningOptions,
         wall_s: Callable[[], float],
-        progress: Callable[[TuningProgress], None],
+        pool: AxisPool,
         cancelled: Callable[[], bool],
     ) -> None:
         self._configuration, self._options = configuration, options
@@ -93,15 +110,44 @@ class _Tuning:
         self._laboratory = laboratory(
             built.body, built.masses, in_force, options, wall_s=wall_s, cancelled=cancelled
         )
-        self._pool = AxisPool(options.workers, progress, cancelled)
-        self._free = tuple(name for name in in_force if name not in self._locked)
+        self._pool = pool
+        self._free = tuple(
+            name for name in in_force if name not in self._locked and options.includes(name)
+        )
+        if options.axes is not None and not self._free:
+            raise TuningError(
+                f"none of the chosen axes can be tuned: {', '.join(options.axes)} are locked or"
+                " missing in this configuration"
+            )
         self._attempts = {
             name: AxisAttempts(name, in_force[name], options)
             for name in self._free
             if self._source(name) == name
         }
+        for name in options.relay_torques_nm:
+            if name not in self._attempts:
+                raise TuningError(
+                    f"a relay torque is given for {name}, which is not measured: it is locked, not"
+                    " chosen, or copied from the other side; measured are"
+                    f" {', '.join(self._attempts)}"
+                )
+        self._check_torques(in_force)
         self._trials: dict[str, StepFigures] = {}
         self._clearances: dict[str, float] = {}
+        self._by_ramp: dict[str, ByRamp] = {}
+
+    def _check_torques(self, settings: Mapping[str, AxisSettings]) -> None:
+        """Raise TuningError for a torque for all axes that none of them may take."""
+        most = {name: MOTOR_SHARE * settings[name].max_torque_nm for name in self._attempts}
+        torque_nm = self._options.relay_torque_nm
+        if torque_nm is None or not most or torque_nm <= max(most.values()):
+            return
+        strongest = max(most, key=lambda name: most[name])
+        raise TuningError(
+            f"a relay torque is {torque_nm:g} N m, which no axis may take: above 0 up to"
+            f" {most[strongest]:g} N m is valid for the strongest, {strongest}, {MOTOR_SHARE:.0%}"
+            " of its torque limit"
+        )
 
     def run(self) -> None:
         """Run attempt after attempt, and finally test the whole body if anything changed since."""
@@ -123,6 +169,7 @@ class _Tuning:
             one.settle()
         if last_attempt > 1 or pending:
             self._try(last_attempt, self._free)
+        self._compare_with_ramp()
 
     def results(self) -> tuple[AxisTuning, ...]:
         """Return the result of every axis, in the configuration's order."""
@@ -144,6 +191,30 @@ class _Tuning:
         for name, experiment in found.items():
             self._attempts[name].record(experiment)
 
+    def _compare_with_ramp(self) -> None:
+        """Tune and test by the ramp the axes whose torque was chosen, without keeping the gains."""
+        chosen = tuple(
+            name for name in self._attempts if self._options.relay_torque_of(name) is not None
+        )
+        if not chosen:
+            return
+        by_ramp = replace(self._laboratory, options=self._options.without_torques())
+        found = self._pool.run(1, "relay", chosen, lambda axis: by_ramp.experiment(axis, 1))
+        gains = {
+            name: gains_of(name, outcome, self._options)
+            for name, outcome in found.items()
+            if not isinstance(outcome, NoOscillation)
+        }
+        affected = [name for name in self._free if self._source(name) in gains]
+        settings = self._settings()
+        for name in affected:
+            own = gains[self._source(name)]
+            settings[name] = replace(settings[name], kp=own.kp, kd=own.kd)
+        lab = self._laboratory
+        trial = Trial(lab.body, lab.masses, settings, gravity=self._configuration.gravity)
+        steps = self._pool.run(1, "steps", affected, trial.step)
+        self._by_ramp = {name: ByRamp(settings[name].kp, steps[name]) for name in affected}
+
     def _try(self, attempt: int, axes: tuple[str, ...] | list[str]) -> None:
         if not axes:
             return
@@ -164,5 +235,8 @@ class _Tuning:
         if name in self._locked:
             why = "its limits leave no range" if own.locked else "it is in a locked group"
             return AxisTuning(name, own.kp, own.kd, "locked", f"skipped: {why}")
+        if name not in self._free:
+            return AxisTuning(name, own.kp, own.kd, "kept", "not chosen")
         source = self._source(name)
-        return self._attempts[source].result(name, self._trials[name], self._clearances[name])
+        found = self._attempts[source].result(name, self._trials[name], self._clearances[name])
+        return with_choice(found, self._by_ramp.get(name))

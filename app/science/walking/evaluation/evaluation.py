@@ -4,8 +4,8 @@ Each walk is predicted from its planned path and its dependencies alone. All fig
 draws: the first one is the paper's single draw, all of them are the predicted distribution.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import combinations
 
 import numpy as np
@@ -17,11 +17,22 @@ from app.science.walking.evaluation.scoring import (
     ErrorSummary,
     comparison,
     error_summary,
+    over_people,
 )
-from app.science.walking.models import SteeringModel, covers, crps_s, iqr, predictor_for
+from app.science.walking.models import (
+    SteeringModel,
+    TravelTimeModel,
+    covers,
+    crps_s,
+    iqr,
+    predictor_for,
+)
 from app.science.walking.records import PathFollower, PlannedWalk, WalkingError
+from app.science.walking.travel_times import resting_of
 
 DRAWS = 200
+PAPERS = ("stat", "adapt", "prob")
+"""The paper's models, which are also compared by its own tests."""
 LEAST_FOR_IQR = 4
 """Fewest walks of a course from which an interquartile range is computed."""
 CYCLE_S, WALKING_SHARE = 100.0, 0.2
@@ -66,6 +77,8 @@ class Evaluation:
         subjects, courses: the subject and the course of each walk; walks of one course are
             repetitions by one or several people.
         outcomes: the outcome of each model.
+        left_out: by the index of the walk that was given, why a model cannot predict it; such a
+            walk is in no outcome, so that all models are compared on the same walks.
     """
 
     truth_s: FloatArray
@@ -73,6 +86,7 @@ class Evaluation:
     subjects: tuple[str, ...]
     courses: tuple[str, ...]
     outcomes: dict[str, Outcome]
+    left_out: Mapping[int, str] = field(default_factory=dict)
 
     def crps_ratio(self, first: str, second: str) -> float:
         """Return the mean CRPS of the first model over that of the second."""
@@ -86,16 +100,40 @@ class Evaluation:
         """Summarise the absolute travel-time errors of the predictions' medians."""
         return error_summary(np.median(self.outcomes[model].draws_s, axis=1), self.truth_s)
 
-    def comparisons(self) -> list[Comparison]:
-        """Compare each pair of models by the absolute travel-time errors of single draws."""
-        return [
-            comparison(
-                pair,
-                np.abs(self.outcomes[pair[0]].single_s - self.truth_s),
-                np.abs(self.outcomes[pair[1]].single_s - self.truth_s),
-            )
-            for pair in combinations(self.outcomes, 2)
-        ]
+    def better_by_s(
+        self, first: str, second: str, rng: np.random.Generator
+    ) -> tuple[float, float, float]:
+        """Return by how much the first model's CRPS is smaller, with a 95 % interval over people.
+
+        Whole people are drawn again, because walks of one person are not independent.
+        """
+        gain = self.outcomes[second].crps_s - self.outcomes[first].crps_s
+        return float(gain.mean()), *over_people(gain, self.subjects, rng)
+
+    @property
+    def people(self) -> int:
+        """The number of people."""
+        return len(set(self.subjects))
+
+    def comparisons(self, *, by_person: bool = False) -> list[Comparison]:
+        """Compare each pair of the paper's models by the errors of single draws.
+
+        As in the paper each walk is a pair of errors. Walks of one person are not independent;
+        `by_person` compares the mean error of each person instead.
+        """
+        found = []
+        for pair in combinations([name for name in PAPERS if name in self.outcomes], 2):
+            first, second = (np.abs(self.outcomes[name].single_s - self.truth_s) for name in pair)
+            if by_person:
+                first, second = self._of_people(first), self._of_people(second)
+            found.append(comparison(pair, first, second))
+        return found
+
+    def _of_people(self, values: FloatArray) -> FloatArray:
+        """Return the mean over each person's walks of values (N,), one per person."""
+        _, person = np.unique(np.array(self.subjects), return_inverse=True)
+        means: FloatArray = np.bincount(person, weights=values) / np.bincount(person)
+        return means
 
     def iqr_ratios(self, model: str) -> list[float]:
         """Return for each course the interquartile range of predictions over that of the walks.
@@ -148,40 +186,65 @@ def evaluate(
             the same course are repetitions.
 
     Raises:
-        WalkingError: there are no walks, or a model cannot predict one of them.
+        WalkingError: there are no walks, or none that all models can predict.
     """
     if not walks:
         raise WalkingError("There are no walks to evaluate a model on.")
-    truth_s = np.array([entry.walk.duration_s for entry in walks])
-    outcomes = {
-        model.name: _outcome(model, follower, walks, truth_s, rng, draws) for model in models
+    left_out: dict[int, str] = {}
+    predicted = {
+        model.name: _predicted(model, follower, walks, rng, draws, left_out) for model in models
     }
+    kept = [at for at in range(len(walks)) if at not in left_out]
+    if not kept:
+        first = min(left_out)
+        raise WalkingError(
+            f"None of the {len(walks)} walks can be predicted by all models; of the first:"
+            f" {left_out[first]}"
+        )
+    entries = [walks[at] for at in kept]
+    truth_s = np.array([entry.walk.duration_s for entry in entries])
+    outcomes = {}
+    for name, (rows, lost) in predicted.items():
+        draws_s = np.stack([rows[at] for at in kept])
+        scores = [crps_s(own, truth) for own, truth in zip(draws_s, truth_s, strict=True)]
+        outcomes[name] = Outcome(name, draws_s, np.array(scores), sum(lost[at] for at in kept))
     return Evaluation(
         truth_s,
-        np.array([entry.path.length_m for entry in walks]),
-        tuple(entry.walk.subject for entry in walks),
-        tuple(course_of(entry) for entry in walks),
+        np.array([entry.path.length_m for entry in entries]),
+        tuple(entry.walk.subject for entry in entries),
+        tuple(course_of(entry) for entry in entries),
         outcomes,
+        left_out,
     )
 
 
-def _outcome(
+def _predicted(
     model: SteeringModel,
     follower: PathFollower,
     walks: Sequence[PlannedWalk],
-    truth_s: FloatArray,
     rng: np.random.Generator,
     draws: int,
-) -> Outcome:
-    found = [
-        predictor_for(entry.walk, model, follower).predict(
-            entry.path, entry.dependencies, draws, rng
-        )
-        for entry in walks
-    ]
-    durations_s = np.stack([one.durations_s for one in found])
-    scores = [crps_s(own, truth) for own, truth in zip(durations_s, truth_s, strict=True)]
-    return Outcome(model.name, durations_s, np.array(scores), sum(one.lost for one in found))
+    left_out: dict[int, str],
+) -> tuple[dict[int, FloatArray], dict[int, int]]:
+    """Return travel times (S,) and lost draws by walk; add those it cannot predict to left_out."""
+    rows: dict[int, FloatArray] = {}
+    lost: dict[int, int] = {}
+    for at, entry in enumerate(walks):
+        if isinstance(model, TravelTimeModel):
+            resting = resting_of(entry)
+            rows[at] = model.durations_s(
+                entry.path, entry.dependencies, draws, rng, resting=resting
+            )
+            lost[at] = 0
+            continue
+        predictor = predictor_for(entry.walk, model, follower)
+        try:
+            found = predictor.predict(entry.path, entry.dependencies, draws, rng)
+        except WalkingError as error:
+            left_out.setdefault(at, str(error))
+        else:
+            rows[at], lost[at] = found.durations_s, found.lost
+    return rows, lost
 
 
 def pooled(evaluations: Sequence[Evaluation]) -> Evaluation:
@@ -202,4 +265,15 @@ def pooled(evaluations: Sequence[Evaluation]) -> Evaluation:
         tuple(name for one in evaluations for name in one.subjects),
         tuple(name for one in evaluations for name in one.courses),
         outcomes,
+        _numbered([(len(one.truth_s), one.left_out) for one in evaluations]),
     )
+
+
+def _numbered(parts: Sequence[tuple[int, Mapping[int, str]]]) -> dict[int, str]:
+    """Number the walks that were left out as if all parts' walks had been given at once."""
+    found: dict[int, str] = {}
+    before = 0
+    for kept, left_out in parts:
+        found |= {before + at: reason for at, reason in left_out.items()}
+        before += kept + len(left_out)
+    return found

@@ -5,7 +5,7 @@ in the paper, one entry of the densified space is left out and estimated from it
 median over the nodes of estimate minus truth is one value, and mean and standard deviation are over
 all entries. The blends of the entry are still present, and it may be a blend of others itself, so
 this measures how smooth the space is and not how well a new person is predicted. The latter is
-`people_left_out`.
+`people_left_out`, and how well travel times are predicted is `times_left_out`.
 """
 
 from dataclasses import dataclass
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.rotations import FloatArray
+from app.science.walking.evaluation.scoring import over_people, reason_for_no_interval
 from app.science.walking.maps import (
     BlendingSpace,
     IntArray,
@@ -21,7 +22,15 @@ from app.science.walking.maps import (
     neighbours,
     radial_basis,
 )
-from app.science.walking.models import person_folds, space_of
+from app.science.walking.models import (
+    MIXED,
+    covers,
+    crps_s,
+    person_folds,
+    space_of,
+    timed_walks_of,
+)
+from app.science.walking.travel_times import BASELINES, StartingAndStopping, posterior_of
 
 NODES = 100
 """Random nodes of each map at which the radial basis is evaluated."""
@@ -101,3 +110,77 @@ def nodes_left_out(space: BlendingSpace, rng: np.random.Generator) -> LeftOut:
 
 def _summary(medians: FloatArray) -> LeftOut:
     return LeftOut(100.0 * float(medians.mean()), 100.0 * float(medians.std()), len(medians))
+
+
+@dataclass(frozen=True)
+class TimesLeftOut:
+    """How well travel times of people who were left out are predicted.
+
+    Attributes:
+        method: "mixed", or a baseline.
+        crps_s: mean CRPS over the walks.
+        crps_less_s: how much smaller the CRPS of P_mixed is, and the ends of its 95 % interval over
+            people, which are None with fewer than six people; all zero for P_mixed itself.
+        coverage_50, coverage_90: shares of walks inside the central 50 and 90 % of predictions.
+        walks, people: their numbers.
+    """
+
+    method: str
+    people: int
+    walks: int
+    crps_s: float
+    coverage_50: float
+    coverage_90: float
+    crps_less_s: tuple[float, float | None, float | None]
+
+
+def times_left_out(
+    database: WalkDatabase, rng: np.random.Generator, *, folds: int = 4, draws: int = 400
+) -> list[TimesLeftOut]:
+    """Predict travel times of people left out, by P_mixed and the baselines learnt from the others.
+
+    Empty if there are fewer than three people, since two are needed to learn from, or if the
+    database does not say which walks the recording cut off.
+    """
+    if database.resting is None or len(database.persons) < 3:
+        return []
+    walks, _ = timed_walks_of(database)
+    parts = [database.walked_by(fold) for fold in person_folds(database, rng, folds)]
+    if any(len(set(np.array(database.subjects)[~out])) < 2 for out in parts):
+        return []
+    scores: dict[str, FloatArray] = {}
+    for curve in (StartingAndStopping(), *BASELINES):
+        rows = np.empty((len(walks), 3))
+        for out in parts:
+            learnt = posterior_of(walks.select(~out), curve, rng)
+            for at in np.flatnonzero(out):
+                drawn = learnt.draw(walks.select(np.array([at])), draws, rng)[0]
+                truth = float(walks.durations_s[at])
+                rows[at] = (
+                    crps_s(drawn, truth),
+                    covers(drawn, truth, 0.5),
+                    covers(drawn, truth, 0.9),
+                )
+        scores[MIXED if isinstance(curve, StartingAndStopping) else curve.name] = rows
+    ours = scores[MIXED][:, 0]
+    found = []
+    for name, rows in scores.items():
+        less = rows[:, 0] - ours
+        interval = (
+            (None, None)
+            if reason_for_no_interval(len(walks.persons))
+            else over_people(less, walks.subjects, np.random.default_rng(1))
+        )
+        score_s, half, most = (float(value) for value in rows.mean(axis=0))
+        found.append(
+            TimesLeftOut(
+                name,
+                len(walks.persons),
+                len(walks),
+                score_s,
+                half,
+                most,
+                (float(less.mean()), *interval),
+            )
+        )
+    return found

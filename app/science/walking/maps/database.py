@@ -34,6 +34,8 @@ class WalkDatabase:
         durations_s: (N,) travel times of the walks themselves.
         lengths_m: (N,) lengths of the planned paths.
         subjects, sources, kinds: the subject, source and kind of each walk.
+        resting: (N,) 1 for a walk from rest to rest, .5 if the recording cuts one of its ends, 0 if
+            it cuts both; None for a database from a file that does not say.
     """
 
     grid: ParameterGrid
@@ -47,6 +49,7 @@ class WalkDatabase:
     subjects: tuple[str, ...]
     sources: tuple[str, ...]
     kinds: tuple[str, ...]
+    resting: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Raise WalkingError if the shapes of the tables do not match."""
@@ -57,6 +60,7 @@ class WalkDatabase:
             and self.deviations.shape == shape == self.arrivals_s.shape
             and self.durations_s.shape == (count,) == self.lengths_m.shape
             and len(self.sources) == count == len(self.kinds)
+            and (self.resting is None or self.resting.shape == (count,))
         )
         if not fits:
             raise WalkingError("The shapes of the tables of a database of walks do not match.")
@@ -85,6 +89,7 @@ class WalkDatabase:
             tuple(self.subjects[i] for i in at),
             tuple(self.sources[i] for i in at),
             tuple(self.kinds[i] for i in at),
+            None if self.resting is None else self.resting[at],
         )
 
     def walked_by(self, persons: Iterable[str]) -> npt.NDArray[np.bool_]:
@@ -141,6 +146,7 @@ def database_of(
         tuple(walk.subject for walk in walks),
         tuple(sources),
         tuple(walk.kind for walk in walks),
+        np.array([(walk.begins_still + walk.ends_still) / 2.0 for walk in walks]),
     )
 
 

@@ -11,9 +11,17 @@ from app.science.walking.models.prediction import Prediction, Predictor, predict
 from app.science.walking.models.reading_choice import ReadingScore, person_folds
 from app.science.walking.models.sampling import HEADROOM, MixtureSampler, density_of
 from app.science.walking.models.steering_models import ProbabilisticModel, SteeringModel
+from app.science.walking.models.travel_time_model import (
+    MIXED,
+    TravelTimeModel,
+    baseline_models,
+    timed_walks_of,
+    travel_time_model,
+)
 
 __all__ = [
     "HEADROOM",
+    "MIXED",
     "FitOptions",
     "FittedWalking",
     "MixtureSampler",
@@ -23,6 +31,8 @@ __all__ = [
     "ReadingScore",
     "StaticFit",
     "SteeringModel",
+    "TravelTimeModel",
+    "baseline_models",
     "covers",
     "crps_s",
     "density_of",
@@ -32,4 +42,6 @@ __all__ = [
     "predictor_for",
     "restored",
     "space_of",
+    "timed_walks_of",
+    "travel_time_model",
 ]

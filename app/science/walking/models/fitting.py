@@ -1,7 +1,8 @@
 """Fit the static, the adaptive and the probabilistic model to a database."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -23,7 +24,14 @@ from app.science.walking.models.steering_models import (
     StaticModel,
     SteeringModel,
 )
-from app.science.walking.records import scaling_of
+from app.science.walking.models.travel_time_model import (
+    MIXED,
+    TravelTimeModel,
+    other_scaling,
+    travel_time_model,
+)
+from app.science.walking.records import WalkingError, scaling_of
+from app.science.walking.travel_times import Posterior
 
 LEAST_TO_CHOOSE = 8
 """Fewest people from which a reading is chosen; below, the time-aware reading is used."""
@@ -50,7 +58,7 @@ class FitOptions:
 
 @dataclass(frozen=True, eq=False)
 class FittedWalking:
-    """The three models fitted to a database.
+    """The paper's three models fitted to a database, and P_mixed where the database carries it.
 
     Attributes:
         database: the walks they were fitted to.
@@ -59,6 +67,7 @@ class FittedWalking:
         scores: the scores of all readings that were compared, best first; empty if none were.
         space: the space of P_adapt and P_prob.
         static: P_stat.
+        stored: what P_mixed learnt, if it was read from a file; else it is learnt when asked for.
     """
 
     database: WalkDatabase
@@ -67,6 +76,43 @@ class FittedWalking:
     scores: tuple[ReadingScore, ...]
     space: BlendingSpace
     static: StaticFit
+    stored: Posterior | None = None
+
+    @cached_property
+    def mixed(self) -> TravelTimeModel | None:
+        """P_mixed; None if the model is from a file that does not say which walks were cut off."""
+        if self.database.resting is None:
+            return None
+        if self.stored is not None:
+            return TravelTimeModel(MIXED, self.stored, other_scaling(self.database))
+        seed = np.random.default_rng(self.options.seed).spawn(4)[3]
+        return travel_time_model(self.database, seed)
+
+    @property
+    def usual(self) -> SteeringModel:
+        """The model that predictions are made with: P_mixed, or P_prob where there is none."""
+        return self.mixed or self.prob
+
+    def named(self, name: str) -> SteeringModel:
+        """Return one of the models by its name; raise WalkingError if there is none."""
+        found = {model.name: model for model in (self.usual, *self.models)}
+        if name not in found:
+            raise WalkingError(
+                f"There is no model {name!r} in this file, only {', '.join(found)}. A file of an"
+                " earlier version has no mixed: fit the walks again."
+            )
+        return found[name]
+
+    def outside(self, dependencies: Mapping[str, float]) -> list[str]:
+        """Return the dependencies outside the range of the walks that the model was fitted to."""
+        base = self.database
+        return [
+            name
+            for at, name in enumerate(base.names)
+            if not base.vectors[:, at].min() - 1e-9
+            <= dependencies[name]
+            <= base.vectors[:, at].max() + 1e-9
+        ]
 
     @property
     def stat(self) -> StaticModel:
@@ -85,7 +131,7 @@ class FittedWalking:
 
     @property
     def models(self) -> tuple[SteeringModel, ...]:
-        """All three models, in the paper's order."""
+        """The paper's three models, in its order."""
         return self.stat, self.adapt, self.prob
 
 
@@ -117,11 +163,12 @@ def restored(
     reading: SuitabilityOptions,
     scores: Sequence[ReadingScore],
     static: StaticFit,
+    stored: Posterior | None = None,
 ) -> FittedWalking:
     """Rebuild a fitted model from its stored parts; the same seed gives the same blends."""
     seed = np.random.default_rng(options.seed).spawn(3)[1]
     space = space_of(database, reading, seed, entries=options.entries, k=options.k)
-    return FittedWalking(database, options, reading, tuple(scores), space, static)
+    return FittedWalking(database, options, reading, tuple(scores), space, static, stored)
 
 
 def space_of(

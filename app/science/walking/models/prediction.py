@@ -13,6 +13,7 @@ import numpy as np
 
 from app.science.rotations import FloatArray
 from app.science.walking.models.steering_models import SteeringModel
+from app.science.walking.models.travel_time_model import TravelTimeModel
 from app.science.walking.records import (
     Course,
     PathFollower,
@@ -25,6 +26,8 @@ from app.science.walking.records import (
 EXTRA_S, SLOWEST_S_PER_M = 10.0, 12.0
 """Time limit of an agent: 10 s, plus 12 s per metre, slower than the grid's slowest."""
 ROUNDS, ALTERNATIVES = 20, 200
+_ADJUSTED = 3
+"""How often agents are slowed down or sped up towards a drawn travel time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,8 +96,11 @@ class Predictor:
         durations: list[FloatArray] = []
         missing, lost = count, 0
         for _ in range(ROUNDS):
-            drawn = self.model.vectors(dependencies, missing, rng)
-            arrival_s = self.walked(path, drawn, samples=1).arrival_s
+            if isinstance(self.model, TravelTimeModel):
+                drawn, arrival_s = self._timed(self.model, path, dependencies, missing, rng)
+            else:
+                drawn = self.model.vectors(dependencies, missing, rng)
+                arrival_s = self.walked(path, drawn, samples=1).arrival_s
             arrived = np.isfinite(arrival_s)
             vectors.append(drawn[arrived])
             durations.append(arrival_s[arrived])
@@ -103,6 +109,25 @@ class Predictor:
             if not missing:
                 break
         return Prediction(np.concatenate(vectors), np.concatenate(durations), lost)
+
+    def _timed(
+        self,
+        model: TravelTimeModel,
+        path: PlannedPath,
+        dependencies: Mapping[str, float],
+        count: int,
+        rng: np.random.Generator,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Draw travel times and agents that take them; a time is NaN if its agent gets lost."""
+        resting = ((self.begin_m_s == 0.0) + self.brakes) / 2.0
+        durations_s, vectors = model.agents(
+            path.length_m, dependencies, count, rng, resting=resting
+        )
+        for _ in range(_ADJUSTED):
+            arrival_s = self.walked(path, vectors, samples=1).arrival_s
+            faster = np.nan_to_num(arrival_s / durations_s, nan=1.0)[:, None]
+            vectors = vectors * np.concatenate([faster, faster**2, np.ones_like(faster)], axis=1)
+        return vectors, np.where(np.isfinite(arrival_s), durations_s, np.nan)
 
     def _best(
         self, path: PlannedPath, dependencies: Mapping[str, float], rng: np.random.Generator

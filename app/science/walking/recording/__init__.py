@@ -2,21 +2,31 @@
 
 `track_of_motion` extracts a person's track on the floor from a capture, `walks_of` cuts a track
 into walks, and `entry_of` finds the path of each; `planned_walk` always takes the planned one.
-`census` counts path lengths.
+`census` counts path lengths, and `doubts_about` names what
+suggests another unit.
 """
 
 from app.science.walking.recording.capture_tracks import TrackingOptions, track_of_motion
 from app.science.walking.recording.census import census
+from app.science.walking.recording.plausibility import doubts_about
 from app.science.walking.recording.segmentation import rounds_of, walks_of
 from app.science.walking.recording.tracks import Walker
-from app.science.walking.recording.walks import LeftOut, dependencies_of, entry_of, planned_walk
+from app.science.walking.recording.walks import (
+    LeftOut,
+    Recorded,
+    dependencies_of,
+    entry_of,
+    planned_walk,
+)
 
 __all__ = [
     "LeftOut",
+    "Recorded",
     "TrackingOptions",
     "Walker",
     "census",
     "dependencies_of",
+    "doubts_about",
     "entry_of",
     "planned_walk",
     "rounds_of",

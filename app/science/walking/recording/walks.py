@@ -12,6 +12,8 @@ obstacle and is left out.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from app.science.walking.recording.segmentation import smoothed
 from app.science.walking.records import (
     LENGTH,
@@ -32,6 +34,12 @@ LONGER, SHORTER = 1.08, 0.92
 SWAY_S = 0.2
 """Standard deviation of the filter that takes most of the sway of a stride from a walk."""
 _SPACING_M = 0.1
+
+
+FASTEST_M_S = 4.0
+"""Mean speed that nobody walks: race walkers come close to it, and others run from 2 m/s on."""
+SAME_M = 1e-3
+"""Largest difference between two recordings of one walk."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +104,40 @@ def entry_of(
     path = own_path(walk)
     dependencies = dependencies_of(path, walk.stature_m, others)
     return PlannedWalk(walk, path, dependencies, is_own_path=True)
+
+
+class Recorded:
+    """The walks of some files so far, to notice what cannot be one more walk of somebody.
+
+    A file that is given twice, or under another name, would count as one more walk, and even as one
+    more person. A table with a wrong unit or rate gives walks faster than anybody walks.
+    """
+
+    def __init__(self) -> None:
+        self._by_samples: dict[int, list[tuple[str, Walk]]] = {}
+
+    def objection(self, walk: Walk, name: str) -> str | None:
+        """Return why a walk cannot be used, or None, and remember it by its name."""
+        speed = walk.length_m / walk.duration_s
+        if speed > FASTEST_M_S:
+            return (
+                f"it goes {speed:.1f} m/s on average, faster than anybody walks: check the unit of"
+                " x and y, and the rate"
+            )
+        alike = self._by_samples.setdefault(len(walk.times_s), [])
+        for other_name, other in alike:
+            if _is_same(walk, other):
+                return f"it is the same recording as {other_name}, sample for sample"
+        alike.append((name, walk))
+        return None
+
+
+def _is_same(one: Walk, other: Walk) -> bool:
+    places = [walk.xy_m - walk.xy_m[0] for walk in (one, other)]
+    return bool(
+        np.abs(one.times_s - other.times_s).max() < SAME_M
+        and np.abs(places[0] - places[1]).max() < SAME_M
+    )
 
 
 def own_path(walk: Walk) -> PlannedPath:

@@ -45,19 +45,25 @@ const MOVEMENTS: Readonly<Record<string, Readonly<Record<Letter, Movement>>>> = 
   Toes: { X: "axis.move.lift", Y: "axis.move.turn", Z: "axis.move.tilt" },
 };
 
+/** "left elbow" for `LeftLowerArm`; a part that moves about no named joint stays as it is. */
+export function jointName({ t }: Pick<Texts, "t">, part: string): string {
+  const [, side = "", name = ""] = AXIS.exec(`${part}X`) ?? [];
+  const [, finger, phalanx] = FINGER.exec(name) ?? [];
+  if (finger !== undefined) {
+    return t(`axis.${phalanx}` as Key, { finger: t(`axis.joint.${side}${finger}` as Key) });
+  }
+  return name in MOVEMENTS ? t(`axis.joint.${side}${name}` as Key) : part;
+}
+
 /** "left elbow: bend" for `LeftLowerArmY`; a name that is no axis of the body stays as it is. */
 export function axisName({ t }: Pick<Texts, "t">, axis: string): string {
   const [, side = "", part = "", letter = ""] = AXIS.exec(axis) ?? [];
-  const [, finger, phalanx] = FINGER.exec(part) ?? [];
+  const [, finger] = FINGER.exec(part) ?? [];
   const movements =
     finger === undefined ? MOVEMENTS[part] : finger === "Thumb" ? THUMB : ONE_FINGER;
   const movement = movements?.[letter as Letter];
   if (movement === undefined) return axis;
-  const joint =
-    finger === undefined
-      ? t(`axis.joint.${side}${part}` as Key)
-      : t(`axis.${phalanx}` as Key, { finger: t(`axis.joint.${side}${finger}` as Key) });
-  return t("axis.name", { joint, movement: t(movement) });
+  return t("axis.name", { joint: jointName({ t }, `${side}${part}`), movement: t(movement) });
 }
 
 /** Whether every word of a search is in the axis's words or in its own name. */

@@ -7,6 +7,8 @@ export const avatarChangesEn = {
   "avatarChanges.applied": "In force on the headset",
   "avatarChanges.waiting": "Not confirmed by the headset yet",
   "avatarChanges.refused": "The headset could not apply the changes",
+  "avatarChanges.reasonHidden":
+    "Its reason is recorded, and hidden because it may reveal the condition.",
   "avatarChanges.change": "Change",
   "avatarChanges.undo": "Undo",
   "avatarChanges.back": "Back to the study's settings",
@@ -142,6 +144,8 @@ export const avatarChangesDe: Readonly<Record<keyof typeof avatarChangesEn, stri
   "avatarChanges.applied": "Auf dem Headset in Kraft",
   "avatarChanges.waiting": "Vom Headset noch nicht bestätigt",
   "avatarChanges.refused": "Das Headset konnte die Änderungen nicht übernehmen",
+  "avatarChanges.reasonHidden":
+    "Der Grund ist gespeichert, aber verborgen, weil er die Bedingung verraten könnte.",
   "avatarChanges.change": "Ändern",
   "avatarChanges.undo": "Rückgängig",
   "avatarChanges.back": "Zurück zu den Einstellungen der Studie",

@@ -11,8 +11,10 @@ import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
+import { Attention } from "./Attention";
 import classes from "./Bodies.module.css";
 import { BodyDropZone, BodyUploadList } from "./BodyUploadList";
+import { licenceName, titleOf } from "./names";
 import { bodiesQuery } from "./queries";
 import { StatureCard } from "./StatureCard";
 import { useBodyPicture } from "./useBodyPicture";
@@ -81,7 +83,7 @@ function BodyCard({ body }: { readonly body: BodyListed }): JSX.Element {
     body.triangles === null
       ? null
       : t("bodies.triangles", { count: number(body.triangles, language) }),
-    body.licence?.name || null,
+    (body.licence?.name && licenceName(body.licence.name, t)) || null,
   ];
   return (
     <li className={classes.card}>
@@ -90,7 +92,7 @@ function BodyCard({ body }: { readonly body: BodyListed }): JSX.Element {
           {picture === null ? <Icon name="body" size={40} /> : <img src={picture} alt="" />}
         </span>
         <span className={classes.cardWords}>
-          <strong className={classes.cardName}>{body.title ?? body.name ?? body.file_name}</strong>
+          <strong className={classes.cardName}>{titleOf(body)}</strong>
           <span className={classes.tags}>
             {body.name === null ? (
               <span className={classes.unnamed}>{t("bodies.unnamed")}</span>
@@ -102,6 +104,7 @@ function BodyCard({ body }: { readonly body: BodyListed }): JSX.Element {
           <span className={`${classes.soft} numbers`}>
             {facts.filter((fact) => fact !== null).join(" · ")}
           </span>
+          <Attention body={body} />
         </span>
       </Link>
     </li>

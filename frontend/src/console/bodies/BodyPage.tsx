@@ -17,6 +17,7 @@ import classes from "./Bodies.module.css";
 import { Checks } from "./Checks";
 import { Licence } from "./Licence";
 import { NameCard } from "./NameCard";
+import { titleOf } from "./names";
 import { bodyQuery } from "./queries";
 import { UseCard } from "./UseCard";
 
@@ -36,7 +37,7 @@ export function BodyPage({ hash }: { readonly hash: string }): JSX.Element {
 function Body({ body }: { readonly body: BodyView }): JSX.Element {
   const { t } = useTexts();
   const canWrite = usePermissions()("body");
-  const title = body.title ?? body.name ?? body.file_name;
+  const title = titleOf(body);
   useTitle(title);
   return (
     <>

@@ -31,9 +31,11 @@ export function Checks({ checks }: { readonly checks: readonly BodyCheck[] }): J
 function Found({ check }: { readonly check: BodyCheck }): JSX.Element {
   const { t, language } = useTexts();
   const { value = null, limit = null } = check;
-  const isLength = check.key === "hulls";
-  const shown = (one: number | null) =>
-    one === null ? "–" : isLength ? decimals(1000 * one, language, 1) : number(one, language);
+  const shown = (one: number | null) => {
+    if (one === null) return "–";
+    if (check.key === "hulls") return decimals(1000 * one, language, 1);
+    return check.key === "reach" ? decimals(100 * one, language, 0) : number(one, language);
+  };
   return (
     <>
       <span className={`${classes.found} numbers`}>

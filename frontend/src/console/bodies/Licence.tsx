@@ -4,6 +4,7 @@ import type { BodyView } from "@shared/api/bodies";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import classes from "./Bodies.module.css";
+import { knownLicence, licenceName } from "./names";
 
 const USES = [
   ...(["commercial", "modification", "redistribution"] as const),
@@ -13,6 +14,7 @@ const USES = [
 export function Licence({ body }: { readonly body: BodyView }): JSX.Element {
   const { t } = useTexts();
   const { licence } = body;
+  const known = knownLicence(licence?.name ?? "");
   return (
     <section className={classes.panel} aria-labelledby="body-licence">
       <Title order={2} size="h3" id="body-licence">
@@ -25,7 +27,14 @@ export function Licence({ body }: { readonly body: BodyView }): JSX.Element {
           <Entry name={t("bodies.licence.title")}>{licence.title}</Entry>
           <Entry name={t("bodies.licence.authors")}>{licence.authors.join(", ")}</Entry>
           <Entry name={t("bodies.licence.copyright")}>{licence.copyright}</Entry>
-          <Entry name={t("bodies.licence.name")}>{licence.name}</Entry>
+          <Entry name={t("bodies.licence.name")}>
+            {[
+              licenceName(licence.name, t),
+              known === null ? "" : t(`bodies.licence.means.${known}`),
+            ]
+              .filter((words) => words !== "")
+              .join(": ")}
+          </Entry>
           <Entry name={t("bodies.licence.url")}>
             {[licence.url, licence.other_url].filter((url) => url !== "").join(" ")}
           </Entry>

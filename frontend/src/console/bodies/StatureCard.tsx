@@ -14,9 +14,12 @@ import { PAPER_AVATARS, statureOf } from "../captures/avatars";
 import { capturesQuery } from "../captures/queries";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
+import { ScrollBox } from "../ui/tables";
 import classes from "./Bodies.module.css";
 
 const STATURES_M = PAPER_AVATARS.map((avatar) => statureOf(avatar) / 100);
+/** The choice of the walk that the server generates, for labs without a capture. */
+const GENERATED = "generated";
 /** Stride lengths and lifts that the paper prints for them (its figure 9), centimetres. */
 const PRINTED = [
   { length: 110, height: 16 },
@@ -38,6 +41,7 @@ export function StatureCard({ hash }: { readonly hash: string }): JSX.Element {
           name={t("bodies.statures")}
           staturesM={STATURES_M}
           firstSide="front"
+          isLabelled
         />
         <Loaded query={useQuery(capturesQuery)}>
           {(page) => <Steps usable={page.captures.filter((one) => one.has_skeleton)} />}
@@ -50,21 +54,28 @@ export function StatureCard({ hash }: { readonly hash: string }): JSX.Element {
 function Steps({ usable }: { readonly usable: readonly CaptureListed[] }): JSX.Element {
   const { t } = useTexts();
   const [chosen, setChosen] = useState<string | null>(null);
-  const capture = usable.find(({ id }) => id === chosen) ?? usable[0];
+  const capture =
+    chosen === GENERATED ? undefined : (usable.find(({ id }) => id === chosen) ?? usable[0]);
   return (
     <div className={classes.steps}>
-      {usable.length > 0 && (
-        <Select
-          label={t("bodies.statures.capture")}
-          data={usable.map(({ id, title }) => ({ value: id, label: title }))}
-          value={capture?.id ?? null}
-          allowDeselect={false}
-          onChange={setChosen}
-        />
-      )}
+      <Select
+        label={t("bodies.statures.capture")}
+        data={[
+          ...usable.map(({ id, title }) => ({ value: id, label: title })),
+          { value: GENERATED, label: t("bodies.statures.generated") },
+        ]}
+        value={capture?.id ?? GENERATED}
+        allowDeselect={false}
+        onChange={setChosen}
+      />
       <StepTable id={capture?.id ?? null} />
       {capture === undefined ? (
-        <p className={classes.soft}>{t("bodies.statures.none")}</p>
+        <p className={classes.soft}>
+          {t("bodies.statures.none")}{" "}
+          <Anchor component={Link} href="/captures" size="sm" underline="always">
+            {t("bodies.statures.upload")}
+          </Anchor>
+        </p>
       ) : (
         <Anchor component={Link} href={`/captures/${capture.id}/verification`} size="sm">
           {t("bodies.statures.all")}
@@ -78,43 +89,47 @@ function StepTable({ id }: { readonly id: string | null }): JSX.Element {
   const { t, language } = useTexts();
   const query = useQuery({
     queryKey: ["captures", id, "three-statures"],
-    queryFn: () => captures.verification(id ?? "", PAPER_AVATARS, false),
-    enabled: id !== null,
+    queryFn: () =>
+      id === null
+        ? captures.generatedVerification(PAPER_AVATARS)
+        : captures.verification(id, PAPER_AVATARS, false),
   });
   const cm = (metres: number | null | undefined) =>
     metres == null ? "–" : decimals(100 * metres, language, 1);
   return (
-    <Table verticalSpacing="xs">
-      <Table.Caption>{t("bodies.statures.caption")}</Table.Caption>
-      <Table.Thead>
-        <Table.Tr>
-          <Table.Th rowSpan={2}>{t("bodies.statures.stature")}</Table.Th>
-          <Table.Th colSpan={2}>{t("bodies.statures.length")}</Table.Th>
-          <Table.Th colSpan={2}>{t("bodies.statures.height")}</Table.Th>
-        </Table.Tr>
-        <Table.Tr>
-          <Table.Th>{t("bodies.statures.here")}</Table.Th>
-          <Table.Th>{t("bodies.statures.printed")}</Table.Th>
-          <Table.Th>{t("bodies.statures.here")}</Table.Th>
-          <Table.Th>{t("bodies.statures.printed")}</Table.Th>
-        </Table.Tr>
-      </Table.Thead>
-      <Table.Tbody className="numbers">
-        {PAPER_AVATARS.map((avatar, index) => {
-          const own = query.data?.avatars.find(({ name }) => name === avatar);
-          return (
-            <Table.Tr key={avatar}>
-              <Table.Th scope="row">
-                {t("capture.avatar.cm", { value: statureOf(avatar) })}
-              </Table.Th>
-              <Table.Td>{cm(own?.mean_stride_length_m)}</Table.Td>
-              <Table.Td>{PRINTED[index]?.length}</Table.Td>
-              <Table.Td>{cm(own?.mean_step_height_m)}</Table.Td>
-              <Table.Td>{PRINTED[index]?.height}</Table.Td>
-            </Table.Tr>
-          );
-        })}
-      </Table.Tbody>
-    </Table>
+    <ScrollBox label={t("bodies.statures.caption")}>
+      <Table verticalSpacing="xs">
+        <Table.Caption>{t("bodies.statures.caption")}</Table.Caption>
+        <Table.Thead>
+          <Table.Tr>
+            <Table.Th rowSpan={2}>{t("bodies.statures.stature")}</Table.Th>
+            <Table.Th colSpan={2}>{t("bodies.statures.length")}</Table.Th>
+            <Table.Th colSpan={2}>{t("bodies.statures.height")}</Table.Th>
+          </Table.Tr>
+          <Table.Tr>
+            <Table.Th>{t("bodies.statures.here")}</Table.Th>
+            <Table.Th>{t("bodies.statures.printed")}</Table.Th>
+            <Table.Th>{t("bodies.statures.here")}</Table.Th>
+            <Table.Th>{t("bodies.statures.printed")}</Table.Th>
+          </Table.Tr>
+        </Table.Thead>
+        <Table.Tbody className="numbers">
+          {PAPER_AVATARS.map((avatar, index) => {
+            const own = query.data?.avatars.find(({ name }) => name === avatar);
+            return (
+              <Table.Tr key={avatar}>
+                <Table.Th scope="row">
+                  {t("capture.avatar.cm", { value: statureOf(avatar) })}
+                </Table.Th>
+                <Table.Td>{cm(own?.mean_stride_length_m)}</Table.Td>
+                <Table.Td>{PRINTED[index]?.length}</Table.Td>
+                <Table.Td>{cm(own?.mean_step_height_m)}</Table.Td>
+                <Table.Td>{PRINTED[index]?.height}</Table.Td>
+              </Table.Tr>
+            );
+          })}
+        </Table.Tbody>
+      </Table>
+    </ScrollBox>
   );
 }

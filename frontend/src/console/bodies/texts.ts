@@ -40,6 +40,47 @@ export const bodiesEn = {
   "bodies.check.proportions": "Proportions",
   "bodies.check.proportions.good": "All lengths occur in people.",
   "bodies.check.proportions.note": "Some lengths are unusual for a person.",
+  "bodies.check.reach": "Reach",
+  "bodies.check.reach.good":
+    "When a participant of the same stature reaches ahead, the hand of this body is at most {{value}} cm from their own.",
+  "bodies.check.reach.warn":
+    "When a participant of the same stature reaches ahead, the hand of this body is {{value}} cm from their own, because its arms or shoulders have other proportions. They have to correct that by sight and lean further: more than {{limit}} cm lead beside a box of the shipped hand task. Try the task in a test session, or enlarge the boxes in the study.",
+  "bodies.check.reach.unknown": "The body lacks parts of an arm, so its reach is not known.",
+  "bodies.attention.reach": "Hand {{off}} cm from the participant's own when reaching",
+  "bodies.attention.triangles": "{{count}} triangles: too many for a standalone headset",
+  "bodies.attention.wearing": "Its author restricts who may wear it",
+  "bodies.statures.generated": "Generated walk (nobody's)",
+  "bodies.statures.upload": "Go to Captures",
+  "bodies.licence.of.cc0": "CC0 (public domain)",
+  "bodies.licence.of.cc_by": "Creative Commons Attribution (CC BY)",
+  "bodies.licence.of.cc_by_sa": "Creative Commons Attribution-ShareAlike (CC BY-SA)",
+  "bodies.licence.of.cc_by_nd": "Creative Commons Attribution-NoDerivatives (CC BY-ND)",
+  "bodies.licence.of.cc_by_nc": "Creative Commons Attribution-NonCommercial (CC BY-NC)",
+  "bodies.licence.of.cc_by_nc_sa":
+    "Creative Commons Attribution-NonCommercial-ShareAlike (CC BY-NC-SA)",
+  "bodies.licence.of.cc_by_nc_nd":
+    "Creative Commons Attribution-NonCommercial-NoDerivatives (CC BY-NC-ND)",
+  "bodies.licence.of.apache": "Apache License 2.0",
+  "bodies.licence.of.mit": "MIT License",
+  "bodies.licence.of.vrm_public": "VRM Public License 1.0",
+  "bodies.licence.of.redistribution_prohibited": "Redistribution prohibited",
+  "bodies.licence.of.other": "A licence of its author's own",
+  "bodies.licence.means.cc0": "any use, without conditions",
+  "bodies.licence.means.cc_by": "any use; its authors must be named",
+  "bodies.licence.means.cc_by_sa":
+    "any use; its authors must be named, and changed models need the same licence",
+  "bodies.licence.means.cc_by_nd": "any use of the unchanged model; its authors must be named",
+  "bodies.licence.means.cc_by_nc": "non-commercial use; its authors must be named",
+  "bodies.licence.means.cc_by_nc_sa":
+    "non-commercial use; its authors must be named, and changed models need the same licence",
+  "bodies.licence.means.cc_by_nc_nd":
+    "non-commercial use of the unchanged model; its authors must be named",
+  "bodies.licence.means.apache": "any use; licence and notices must be kept",
+  "bodies.licence.means.mit": "any use; the licence must be kept",
+  "bodies.licence.means.vrm_public": "what the lines below allow",
+  "bodies.licence.means.redistribution_prohibited":
+    "use as the lines below say, but the file must not be passed on",
+  "bodies.licence.means.other": "read its terms",
   "bodies.check.triangles": "Triangles",
   "bodies.check.triangles.good": "{{value}}; a standalone headset draws up to {{limit}} smoothly.",
   "bodies.check.triangles.warn":
@@ -137,9 +178,9 @@ export const bodiesEn = {
   "bodies.statures": "Three statures",
   "bodies.statures.lead":
     "The body “neutral” at 130, 165 and 190 cm, the statures of the avatars of Degen et al. 2022. The table shows how long their strides and how high their steps are when the same walk is transferred to them.",
-  "bodies.statures.capture": "Recorded walk",
+  "bodies.statures.capture": "Walk",
   "bodies.statures.none":
-    "Upload a recorded walk on the page Captures to see its steps on these bodies.",
+    "These are the steps of a walk that the server generates: 70 cm long, by a body 175 cm tall. Upload a recorded walk to see its steps instead.",
   "bodies.statures.all": "The full verification of this capture",
   "bodies.statures.stature": "Stature",
   "bodies.statures.length": "Stride length (cm)",
@@ -193,6 +234,51 @@ export const bodiesDe: Readonly<Record<keyof typeof bodiesEn, string>> = {
   "bodies.check.proportions": "Proportionen",
   "bodies.check.proportions.good": "Alle Längen kommen bei Menschen vor.",
   "bodies.check.proportions.note": "Einige Längen sind für einen Menschen ungewöhnlich.",
+  "bodies.check.reach": "Reichweite",
+  "bodies.check.reach.good":
+    "Wenn eine gleich große Person nach vorn greift, ist die Hand dieses Körpers höchstens {{value}} cm von ihrer eigenen entfernt.",
+  "bodies.check.reach.warn":
+    "Wenn eine gleich große Person nach vorn greift, ist die Hand dieses Körpers {{value}} cm von ihrer eigenen entfernt, weil Arme oder Schultern andere Proportionen haben. Teilnehmende müssen das nach Sicht ausgleichen und sich weiter vorbeugen: Mehr als {{limit}} cm führen neben einen Kasten der mitgelieferten Handaufgabe. Probieren Sie die Aufgabe in einer Testsitzung aus, oder vergrößern Sie die Kästen in der Studie.",
+  "bodies.check.reach.unknown":
+    "Dem Körper fehlen Teile eines Arms, deshalb ist seine Reichweite nicht bekannt.",
+  "bodies.attention.reach": "Hand beim Greifen {{off}} cm neben der eigenen",
+  "bodies.attention.triangles": "{{count}} Dreiecke: zu viele für ein eigenständiges Headset",
+  "bodies.attention.wearing": "Der Urheber schränkt ein, wer ihn tragen darf",
+  "bodies.statures.generated": "Erzeugter Gang (von niemandem)",
+  "bodies.statures.upload": "Zu den Aufnahmen",
+  "bodies.licence.of.cc0": "CC0 (gemeinfrei)",
+  "bodies.licence.of.cc_by": "Creative Commons Namensnennung (CC BY)",
+  "bodies.licence.of.cc_by_sa":
+    "Creative Commons Namensnennung, Weitergabe unter gleichen Bedingungen (CC BY-SA)",
+  "bodies.licence.of.cc_by_nd": "Creative Commons Namensnennung, keine Bearbeitungen (CC BY-ND)",
+  "bodies.licence.of.cc_by_nc": "Creative Commons Namensnennung, nicht kommerziell (CC BY-NC)",
+  "bodies.licence.of.cc_by_nc_sa":
+    "Creative Commons Namensnennung, nicht kommerziell, Weitergabe unter gleichen Bedingungen (CC BY-NC-SA)",
+  "bodies.licence.of.cc_by_nc_nd":
+    "Creative Commons Namensnennung, nicht kommerziell, keine Bearbeitungen (CC BY-NC-ND)",
+  "bodies.licence.of.apache": "Apache-Lizenz 2.0",
+  "bodies.licence.of.mit": "MIT-Lizenz",
+  "bodies.licence.of.vrm_public": "VRM Public License 1.0",
+  "bodies.licence.of.redistribution_prohibited": "Weitergabe verboten",
+  "bodies.licence.of.other": "Eigene Lizenz des Urhebers",
+  "bodies.licence.means.cc0": "jede Verwendung, ohne Bedingungen",
+  "bodies.licence.means.cc_by": "jede Verwendung; die Urheber müssen genannt werden",
+  "bodies.licence.means.cc_by_sa":
+    "jede Verwendung; die Urheber müssen genannt werden, und veränderte Modelle brauchen dieselbe Lizenz",
+  "bodies.licence.means.cc_by_nd":
+    "jede Verwendung des unveränderten Modells; die Urheber müssen genannt werden",
+  "bodies.licence.means.cc_by_nc":
+    "nicht kommerzielle Verwendung; die Urheber müssen genannt werden",
+  "bodies.licence.means.cc_by_nc_sa":
+    "nicht kommerzielle Verwendung; die Urheber müssen genannt werden, und veränderte Modelle brauchen dieselbe Lizenz",
+  "bodies.licence.means.cc_by_nc_nd":
+    "nicht kommerzielle Verwendung des unveränderten Modells; die Urheber müssen genannt werden",
+  "bodies.licence.means.apache": "jede Verwendung; Lizenz und Hinweise müssen erhalten bleiben",
+  "bodies.licence.means.mit": "jede Verwendung; die Lizenz muss erhalten bleiben",
+  "bodies.licence.means.vrm_public": "was die Zeilen darunter erlauben",
+  "bodies.licence.means.redistribution_prohibited":
+    "Verwendung, wie die Zeilen darunter sagen; die Datei darf nicht weitergegeben werden",
+  "bodies.licence.means.other": "lesen Sie ihre Bedingungen",
   "bodies.check.triangles": "Dreiecke",
   "bodies.check.triangles.good":
     "{{value}}; ein eigenständiges Headset zeichnet bis zu {{limit}} flüssig.",
@@ -293,9 +379,9 @@ export const bodiesDe: Readonly<Record<keyof typeof bodiesEn, string>> = {
   "bodies.statures": "Drei Körpergrößen",
   "bodies.statures.lead":
     "Der Körper „neutral“ mit 130, 165 und 190 cm, den Körpergrößen der Avatare von Degen et al. 2022. Die Tabelle zeigt, wie lang ihre Doppelschritte und wie hoch ihre Schritte sind, wenn derselbe Gang auf sie übertragen wird.",
-  "bodies.statures.capture": "Aufgezeichneter Gang",
+  "bodies.statures.capture": "Gang",
   "bodies.statures.none":
-    "Laden Sie auf der Seite Aufnahmen einen aufgezeichneten Gang hoch, um seine Schritte auf diesen Körpern zu sehen.",
+    "Das sind die Schritte eines Gangs, den der Server erzeugt: 70 cm lang, von einem 175 cm großen Körper. Laden Sie einen aufgezeichneten Gang hoch, um stattdessen dessen Schritte zu sehen.",
   "bodies.statures.all": "Die vollständige Verifikation dieser Aufnahme",
   "bodies.statures.stature": "Körpergröße",
   "bodies.statures.length": "Doppelschritt (cm)",

@@ -4,14 +4,13 @@ import { useLocalStorage } from "@mantine/hooks";
 import type { BodyListed } from "@shared/api/bodies";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
+import { titleOf } from "../bodies/names";
 import { bodiesQuery } from "../bodies/queries";
 import { useTexts } from "../i18n";
 
 const SKELETON = "skeleton";
 /** The body that is worn before anybody has chosen one. */
 const USUAL = "neutral";
-
-const nameOf = (body: BodyListed): string => body.name ?? body.file_name;
 
 export interface BodyChoice {
   readonly bodies: readonly BodyListed[];
@@ -46,7 +45,7 @@ export function BodySelect({ choice }: { readonly choice: BodyChoice }): JSX.Ele
       value={choice.hash ?? SKELETON}
       onChange={(value) => choice.choose(value === SKELETON ? null : value)}
       data={[
-        ...choice.bodies.map((body) => ({ value: body.content_hash, label: nameOf(body) })),
+        ...choice.bodies.map((body) => ({ value: body.content_hash, label: titleOf(body) })),
         { value: SKELETON, label: t("bodyView.drawn.skeleton") },
       ]}
     />

@@ -3,6 +3,7 @@
  * by side.
  */
 import { SegmentedControl } from "@mantine/core";
+import { decimals } from "@shared/format";
 import type { CameraSide, Figure } from "@shared/stage/figure";
 import { durationOf } from "@shared/stage/motion";
 import { Stage, type StageHandle } from "@shared/stage/Stage";
@@ -15,6 +16,7 @@ import { useStageTexts } from "../captures/useStageTexts";
 import { useTexts } from "../i18n";
 import { BodyNotice } from "./BodyNotice";
 import classes from "./BodyViewer.module.css";
+import { CameraSides } from "./CameraSides";
 import { EXAMPLE_POSES, type ExamplePose, example } from "./examplePoses";
 import { useBody } from "./useBody";
 
@@ -25,20 +27,23 @@ export interface BodyViewerProps {
   readonly name: string;
   /** Statures to show it in, metres, side by side; the model's own if there are none. */
   readonly staturesM?: readonly number[];
+  /** Whether the stature stands above each figure. */
+  readonly isLabelled?: boolean;
   /** Height of the picture in CSS; by default a part of the window's. */
   readonly height?: string;
   /** From where the camera looks first. */
   readonly firstSide?: CameraSide;
 }
 
-const SIDES: readonly CameraSide[] = ["corner", "front", "side", "back", "top"];
 /** Distance between two bodies, in their statures: room for spread arms. */
 const APART = 1.05;
+const LABEL_ABOVE_M = 0.09;
 const OWN: readonly number[] = [];
 
 export function BodyViewer(props: BodyViewerProps): JSX.Element {
   const { hash, name, staturesM = OWN, height = "clamp(320px, 52vh, 620px)", firstSide } = props;
-  const { t } = useTexts();
+  const { isLabelled = false } = props;
+  const { t, language } = useTexts();
   const texts = useStageTexts();
   const body = useBody(hash);
   const [kind, setKind] = useState<ExamplePose>("stand");
@@ -46,8 +51,15 @@ export function BodyViewer(props: BodyViewerProps): JSX.Element {
   const statures = staturesM.join(" ");
   const figures = useMemo(
     () =>
-      body.model === null ? NOBODY : figuresOf(body.model, kind, statures.split(" ").map(Number)),
-    [body.model, kind, statures],
+      body.model === null
+        ? NOBODY
+        : figuresOf(
+            body.model,
+            kind,
+            statures.split(" ").map(Number),
+            isLabelled ? (statureM) => `${decimals(100 * statureM, language, 0)} cm` : null,
+          ),
+    [body.model, kind, statures, isLabelled, language],
   );
   const motion = figures[0]?.motion;
   const playback = usePlayback(motion === undefined ? seconds(0) : durationOf(motion));
@@ -66,19 +78,7 @@ export function BodyViewer(props: BodyViewerProps): JSX.Element {
           onChange={(value) => setKind(value as ExamplePose)}
           data={EXAMPLE_POSES.map((value) => ({ value, label: t(`bodyView.pose.${value}`) }))}
         />
-        <fieldset className={classes.sides}>
-          <legend className="visually-hidden">{t("stage.look")}</legend>
-          {SIDES.map((from) => (
-            <button
-              key={from}
-              type="button"
-              className={classes.side}
-              onClick={() => stage.current?.placeCamera(from)}
-            >
-              {t(`stage.look.${from}`)}
-            </button>
-          ))}
-        </fieldset>
+        <CameraSides onLook={(from) => stage.current?.placeCamera(from)} />
       </div>
       <div className={classes.stage} style={{ height }}>
         {figures.length > 0 && (
@@ -107,6 +107,7 @@ function figuresOf(
   model: BodyModel,
   kind: ExamplePose,
   wished: readonly number[],
+  labelOf: ((statureM: number) => string) | null,
 ): readonly Figure[] {
   const given = wished.filter((stature) => stature > 0);
   const statures = given.length > 0 ? given : [model.binding.stature_m];
@@ -120,9 +121,13 @@ function figuresOf(
       key: `${index} ${statureM}`,
       motion,
       tone: "solid",
-      offset: [statures.length > 1 ? from + width / 2 : 0, 0],
+      // From the front, which is where bodies face, +x is on the left.
+      offset: [statures.length > 1 ? -(from + width / 2) : 0, 0],
       roles: rolesFrom(motion.names, AVATAR_MAP),
       worn: { model, statureM, pose },
+      ...(labelOf === null
+        ? {}
+        : { label: { text: labelOf(statureM), heightM: statureM + LABEL_ABOVE_M } }),
     };
     from += width;
     return figure;

@@ -8,6 +8,7 @@ import { Notice } from "@shared/ui/Notice";
 import { type JSX, type ReactNode, useMemo } from "react";
 import { type Key, useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
+import { AnatomyNotices } from "./AnatomyNotices";
 import classes from "./Capture.module.css";
 import { ReadingForm } from "./ReadingForm";
 
@@ -23,7 +24,12 @@ export function ConventionsPanel({ capture, motion }: ConventionsPanelProps): JS
   const { t, language } = useTexts();
   const canWrite = usePermissions()("capture");
   const { conventions, notes, observed } = capture.summary;
-  const isGuessed = CONVENTIONS.some((name) => conventions[name].origin === "guessed");
+  const notices = capture.summary.skeleton?.notices ?? [];
+  // A notice about the unit says more than that something was guessed.
+  const isUnitTold = notices.some(({ rule }) => rule === "unit");
+  const isGuessed = CONVENTIONS.some(
+    (name) => conventions[name].origin === "guessed" && !(name === "length" && isUnitTold),
+  );
   const size = useMemo(() => (motion === null ? null : boxOf(motion)), [motion]);
   // Significant digits rather than decimals: a wrong unit changes the size by a factor of a
   // thousand.
@@ -62,6 +68,7 @@ export function ConventionsPanel({ capture, motion }: ConventionsPanelProps): JS
           remedy={t("conventions.guessed.body")}
         />
       )}
+      <AnatomyNotices notices={notices} />
       {canWrite && <ReadingForm capture={capture} />}
       {notes.length > 0 && (
         <div>

@@ -3,7 +3,7 @@
  */
 import { Figure } from "@charts/Figure";
 import { Button, Center, Loader, Title } from "@mantine/core";
-import type { Capture, Verification } from "@shared/api/captures";
+import type { AnatomyNotice, Capture, Verification } from "@shared/api/captures";
 import { number } from "@shared/format";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useMemo, useState } from "react";
@@ -11,6 +11,7 @@ import { Link } from "wouter";
 import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
 import { EmptyState } from "../ui/EmptyState";
+import { AnatomyNotices } from "./AnatomyNotices";
 import { AvatarChips } from "./AvatarChips";
 import { PAPER_AVATARS, statureOf } from "./avatars";
 import { NoAvatar, type TabProps } from "./NoAvatar";
@@ -93,6 +94,7 @@ function VerificationResult({ capture, verification }: VerificationResultProps):
   return (
     <>
       <VerificationSummary verification={verification} />
+      <AnatomyNotices notices={oncePerRule(verification)} />
       <VerificationTable capture={capture} verification={verification} />
       {verification.unmapped_body_joints.length > 0 && (
         <p className={classes.soft}>
@@ -120,6 +122,15 @@ function VerificationResult({ capture, verification }: VerificationResultProps):
       ))}
     </>
   );
+}
+
+/** The notices on the walk: each rule once, since most of them hold for every avatar. */
+function oncePerRule({ avatars }: Verification): readonly AnatomyNotice[] {
+  const found = new Map<string, AnatomyNotice>();
+  for (const notice of avatars.flatMap(({ notices }) => notices)) {
+    if (!found.has(notice.rule)) found.set(notice.rule, notice);
+  }
+  return [...found.values()];
 }
 
 function useFigureWords(): FigureWords {

@@ -29,6 +29,9 @@ const COLUMNS = [
   ...(["start", "contact", "lifts", "slide"] as const),
 ];
 
+/** A raise of less is not worth a sentence. */
+const SHOWN_M = 0.0005;
+
 export function VerificationTable({ capture, verification }: VerificationTableProps): JSX.Element {
   const { t } = useTexts();
   const download = useDownload();
@@ -66,6 +69,44 @@ export function VerificationTable({ capture, verification }: VerificationTablePr
       </section>
       {download.state.phase === "failed" && <Failure error={download.state.error} />}
       <p className={classes.soft}>{t("verify.table.caption")}</p>
+      <Raised avatars={verification.avatars} />
+    </>
+  );
+}
+
+/** What keeping the avatars' feet above the floor costs. */
+function Raised({ avatars }: { readonly avatars: readonly AvatarWalker[] }): JSX.Element {
+  const { t, language } = useTexts();
+  const centimetres = (metres: number) => number(100 * metres, language, 1);
+  const avatarOf = (name: string) =>
+    t("capture.avatar.cm", { value: number(statureOf(name), language) });
+  const raised = avatars
+    .filter(({ floor }) => floor.raised_m >= SHOWN_M)
+    .map(({ name, floor }) =>
+      t("verify.raised.one", {
+        avatar: avatarOf(name),
+        most: centimetres(floor.raised_m),
+        mean: centimetres(floor.mean_raised_m),
+        sunk: centimetres(floor.sunk_m),
+      }),
+    );
+  const lifted = avatars
+    .filter(({ floor }) => (floor.lifted_m ?? 0) >= SHOWN_M)
+    .map(({ name, floor }) =>
+      t("verify.lifted.one", {
+        avatar: avatarOf(name),
+        most: centimetres(floor.lifted_m ?? 0),
+        sunk: centimetres(floor.sunk_m),
+      }),
+    );
+  return (
+    <>
+      {raised.length > 0 && (
+        <p className={classes.soft}>{t("verify.raised", { told: raised.join("; ") })}</p>
+      )}
+      {lifted.length > 0 && (
+        <p className={classes.soft}>{t("verify.lifted", { told: lifted.join("; ") })}</p>
+      )}
     </>
   );
 }

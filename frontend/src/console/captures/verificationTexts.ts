@@ -42,6 +42,13 @@ export const verificationEn = {
   "verify.slide.before": "{{before}} before locking",
   "verify.lowered": "hips up to {{centimetres}} cm lower",
   "verify.reach": "out of reach in {{count}} frames",
+  "verify.raised": "Raised smoothly where a foot would be under the floor: {{told}}.",
+  "verify.raised.one":
+    "{{avatar}} by up to {{most}} cm and {{mean}} cm on average (a foot would be {{sunk}} cm deep)",
+  "verify.lifted":
+    "Feet lifted singly where their lowest point would be under the floor: {{told}}.",
+  "verify.lifted.one":
+    "{{avatar}} by up to {{most}} cm (unlocked, a foot would be {{sunk}} cm deep)",
   "verify.table.caption":
     "Means over whole strides (from one contact of a foot to its next). Slide is the mean speed of feet on the ground.",
   "verify.export": "{{avatar}} as {{format}}",
@@ -107,6 +114,12 @@ export const verificationDe: Readonly<Record<keyof typeof verificationEn, string
   "verify.slide.before": "{{before}} vor dem Festhalten",
   "verify.lowered": "Hüfte bis zu {{centimetres}} cm tiefer",
   "verify.reach": "in {{count}} Bildern außer Reichweite",
+  "verify.raised": "Sanft angehoben, wo ein Fuß unter dem Boden wäre: {{told}}.",
+  "verify.raised.one":
+    "{{avatar}} um bis zu {{most}} cm, im Mittel {{mean}} cm (ein Fuß wäre {{sunk}} cm tief)",
+  "verify.lifted": "Füße einzeln angehoben, wo ihr tiefster Punkt unter dem Boden wäre: {{told}}.",
+  "verify.lifted.one":
+    "{{avatar}} um bis zu {{most}} cm (ohne Festhalten wäre ein Fuß {{sunk}} cm tief)",
   "verify.table.caption":
     "Mittelwerte über ganze Doppelschritte (von einem Aufsetzen eines Fußes bis zu seinem nächsten). Rutschen ist die mittlere Geschwindigkeit der Füße am Boden.",
   "verify.export": "{{avatar}} als {{format}}",

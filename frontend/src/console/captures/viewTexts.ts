@@ -72,6 +72,30 @@ export const captureViewEn = {
   "conventions.origin.format": "set by the format",
   "conventions.origin.guessed": "guessed",
   "conventions.origin.chosen": "chosen here",
+  "anatomy.rule.mirrored": "Left and right are mirrored.",
+  "anatomy.rule.pelvis": "The markers of the pelvis contradict those of the body.",
+  "anatomy.rule.sides": "Left and right differ more than people's sides do.",
+  "anatomy.rule.length": "A length does not fit the rest of the body.",
+  "anatomy.rule.toes": "The feet have no toes.",
+  "anatomy.rule.step_height": "Steps are not as high as the legs allow.",
+  "anatomy.rule.unit": "The file names no unit of length.",
+  "anatomy.action.mended": "It was corrected.",
+  "anatomy.action.refused": "The result cannot be used.",
+  "anatomy.action.noted": "It was left as captured.",
+  "anatomy.action.guessed": "It was guessed from the size of the body.",
+  "anatomy.found": "Found: {{value}}. Expected: {{valid}}.",
+  "anatomy.remedy.mirrored":
+    "The capture was read as having left-handed axes. If instead all names of left and right were exchanged, exchange them and export again.",
+  "anatomy.remedy.exchanged": "Exchange left and right in the joint map.",
+  "anatomy.remedy.pelvis":
+    "Check the labels of front, rear, left and right markers, and export again.",
+  "anatomy.remedy.sides": "Check where the markers were placed, or the skeleton's calibration.",
+  "anatomy.remedy.length": "Check where the markers were placed, or the skeleton's calibration.",
+  "anatomy.remedy.toes":
+    "Steps are measured where such a foot has its ball. Map the toes if the skeleton has them.",
+  "anatomy.remedy.step_height":
+    "Check which joints are mapped to feet and toes, and the axes of the capture.",
+  "anatomy.remedy.unit": "If the person has another size, choose the unit below.",
   "conventions.guessed": "Check the guessed settings",
   "conventions.guessed.body":
     "The file does not specify them. If the size looks wrong, choose another unit or axis below.",
@@ -170,6 +194,30 @@ export const captureViewDe: Readonly<Record<keyof typeof captureViewEn, string>>
   "conventions.origin.format": "durch das Format festgelegt",
   "conventions.origin.guessed": "geraten",
   "conventions.origin.chosen": "hier gewählt",
+  "anatomy.rule.mirrored": "Links und rechts sind gespiegelt.",
+  "anatomy.rule.pelvis": "Die Marker des Beckens widersprechen denen des Körpers.",
+  "anatomy.rule.sides": "Links und rechts unterscheiden sich stärker als bei Menschen.",
+  "anatomy.rule.length": "Eine Länge passt nicht zum übrigen Körper.",
+  "anatomy.rule.toes": "Die Füße haben keine Zehen.",
+  "anatomy.rule.step_height": "Die Schritte sind nicht so hoch, wie es die Beine erwarten lassen.",
+  "anatomy.rule.unit": "Die Datei nennt keine Längeneinheit.",
+  "anatomy.action.mended": "Das wurde korrigiert.",
+  "anatomy.action.refused": "Das Ergebnis ist nicht verwendbar.",
+  "anatomy.action.noted": "Das blieb wie aufgenommen.",
+  "anatomy.action.guessed": "Sie wurde aus der Körpergröße geraten.",
+  "anatomy.found": "Found: {{value}}. Expected: {{valid}}.",
+  "anatomy.remedy.mirrored":
+    "Die Aufnahme wurde mit linkshändigen Achsen gelesen. Wurden stattdessen alle Namen von links und rechts vertauscht, tauschen Sie sie zurück und exportieren Sie neu.",
+  "anatomy.remedy.exchanged": "Vertauschen Sie links und rechts in der Gelenkzuordnung.",
+  "anatomy.remedy.pelvis":
+    "Prüfen Sie die Namen der vorderen, hinteren, linken und rechten Marker und exportieren Sie neu.",
+  "anatomy.remedy.sides": "Prüfen Sie, wo die Marker saßen, oder die Kalibrierung des Skeletts.",
+  "anatomy.remedy.length": "Prüfen Sie, wo die Marker saßen, oder die Kalibrierung des Skeletts.",
+  "anatomy.remedy.toes":
+    "Schritte werden dort gemessen, wo ein solcher Fuß seinen Ballen hat. Ordnen Sie die Zehen zu, falls das Skelett welche hat.",
+  "anatomy.remedy.step_height":
+    "Prüfen Sie, welche Gelenke Füßen und Zehen zugeordnet sind, und die Achsen der Aufnahme.",
+  "anatomy.remedy.unit": "Ist die Person anders groß, wählen Sie unten die Einheit.",
   "conventions.guessed": "Prüfen Sie die geratenen Angaben",
   "conventions.guessed.body":
     "Die Datei gibt sie nicht an. Wenn die Ausdehnung nicht stimmt, wählen Sie unten eine andere Einheit oder Achse.",

@@ -20,11 +20,14 @@ interface HeaderProps {
   readonly feed: FeedState;
   /** Missing while the list is on the page anyway, or when there is nothing left to check. */
   readonly onChecks: (() => void) | undefined;
+  /** Missing before the start, when nothing can have been recorded. */
+  readonly onReceipt: (() => void) | undefined;
   readonly onLog: () => void;
   readonly onHelp: () => void;
 }
 
-export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps): JSX.Element {
+export function Header(props: HeaderProps): JSX.Element {
+  const { session, feed, onChecks, onReceipt, onLog, onHelp } = props;
   const { t } = useTexts();
   const can = usePermissions();
   return (
@@ -36,6 +39,7 @@ export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps):
           {" · "}
           {t("study.version", { version: session.study_version })}
           {session.slot !== null && ` · ${t("head.slot", { number: session.slot.index + 1 })}`}
+          <SessionAvatar session={session} />
         </div>
       </div>
       <KindBadge kind={session.kind} />
@@ -86,6 +90,18 @@ export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps):
             {t("replay.open")}
           </Button>
         )}
+        {onReceipt !== undefined && (
+          <Tooltip label={t("receipt.title")}>
+            <ActionIcon
+              variant="default"
+              size="md"
+              aria-label={t("receipt.title")}
+              onClick={onReceipt}
+            >
+              <Icon name="check" size={18} />
+            </ActionIcon>
+          </Tooltip>
+        )}
         <Button
           variant="default"
           size="xs"
@@ -101,6 +117,23 @@ export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps):
         </Tooltip>
       </div>
     </div>
+  );
+}
+
+/** The version of the avatar and its content hash, with the way to it. */
+function SessionAvatar({ session }: { readonly session: SessionView }): JSX.Element | null {
+  const { t } = useTexts();
+  const { avatar_version: avatar = null, avatar_configuration_hash: hash = null } = session;
+  if (avatar === null || hash === null) return null;
+  const { key, title, version } = avatar;
+  return (
+    <>
+      {" · "}
+      <Link href={`/avatars/${key}/${version}`} title={t("head.avatar.hash", { hash })}>
+        {t("head.avatar", { title, version })}
+      </Link>{" "}
+      <code title={hash}>{hash.slice(0, 8)}</code>
+    </>
   );
 }
 

@@ -26,10 +26,11 @@ import { usePreflight } from "./preflight/usePreflight";
 import { EventDrawer } from "./record/EventDrawer";
 import { NotesPanel } from "./record/NotesPanel";
 import { PhaseTable } from "./record/PhaseTable";
+import { ReceiptDrawer } from "./record/ReceiptDrawer";
 import { ScoresPanel } from "./record/ScoresPanel";
 import { SuggestionsPanel } from "./record/SuggestionsPanel";
 import { Timeline } from "./record/Timeline";
-import { currentStep, primaryAction, type Reasoned } from "./session/action";
+import { currentStep, isBlocked, primaryAction, type Reasoned } from "./session/action";
 import { CommandFailure } from "./session/CommandFailure";
 import { KeyboardHelp, useKeys } from "./session/keys";
 import { type Send, useSession } from "./session/useSession";
@@ -64,6 +65,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
   const can = usePermissions();
   const [asking, setAsking] = useState<Reasoned | null>(null);
   const [log, logs] = useDisclosure();
+  const [receipt, receipts] = useDisclosure();
   const [help, helps] = useDisclosure();
   const [entry, entries] = useDisclosure();
   const [history, histories] = useDisclosure();
@@ -90,7 +92,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
   useKeys({
     primary: () => {
       const action = primaryAction(session);
-      if (action !== null) live.send(action.command);
+      if (action !== null && !isBlocked(session, action)) live.send(action.command);
     },
     pause: () => {
       const type = PAUSING.find((one) => session.allowed.includes(one));
@@ -112,34 +114,42 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
         session={session}
         feed={live.feed}
         onChecks={isPlanned || ended || !can("run") ? undefined : lists.open}
+        onReceipt={session.status === "planned" ? undefined : receipts.open}
         onLog={logs.open}
         onHelp={helps.open}
       />
       <SignalStrip session={session} alarms={alarms} onHistory={histories.open} />
       <Timeline session={session} />
       <div className={classes.centre} data-tour="centre">
-        {session.simulated && (
-          <Notice tone="sim" title={t("simulated.session", { scale: session.time_scale })} />
-        )}
-        {session.kind === "expert" && <Notice tone="info" title={t("expert.session")} />}
-        {!can("run") && <Notice tone="info" icon="info" title={t("read.only")} />}
-        {ended && can("rights") && <AfterWithdrawal session={session} send={live.send} />}
-        <CommandFailure live={live} />
-        {session.refusal !== null ? (
-          <RefusedCard refusal={session.refusal} onReasonNeeded={openReason} />
-        ) : session.held !== null ? (
-          <HeldCard held={session.held} onReasonNeeded={openReason} />
-        ) : (
-          <CurrentStep
-            session={session}
-            live={live}
-            isReady={flight.isClear}
-            onReasonNeeded={openReason}
-            onEnterAnswers={entries.open}
-          />
-        )}
-        {isPlanned && <PreflightCard session={session} flight={flight} />}
-        {hasMovement(session) && <LiveCard session={session} store={live.store} />}
+        <div className={hasMovement(session) ? classes.fold : classes.open}>
+          {session.simulated && (
+            <Notice
+              tone="sim"
+              title={t(session.time_scale === 1 ? "simulated.session.real" : "simulated.session", {
+                scale: session.time_scale,
+              })}
+            />
+          )}
+          {session.kind === "expert" && <Notice tone="info" title={t("expert.session")} />}
+          {!can("run") && <Notice tone="info" icon="info" title={t("read.only")} />}
+          {ended && can("rights") && <AfterWithdrawal session={session} send={live.send} />}
+          <CommandFailure live={live} />
+          {session.refusal !== null ? (
+            <RefusedCard refusal={session.refusal} onReasonNeeded={openReason} />
+          ) : session.held !== null ? (
+            <HeldCard held={session.held} onReasonNeeded={openReason} />
+          ) : (
+            <CurrentStep
+              session={session}
+              live={live}
+              isReady={flight.isClear}
+              onReasonNeeded={openReason}
+              onEnterAnswers={entries.open}
+            />
+          )}
+          {isPlanned && <PreflightCard session={session} flight={flight} />}
+          {hasMovement(session) && <LiveCard session={session} store={live.store} />}
+        </div>
         <TelemetryCard session={session} store={live.store} />
         {ended && <PhaseTable session={session} />}
       </div>
@@ -164,6 +174,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
         <PreflightBody session={session} flight={flight} />
       </RecordDrawer>
       <ReasonDialog type={asking} session={session} live={live} onClose={() => setAsking(null)} />
+      <ReceiptDrawer session={session} opened={receipt} onClose={receipts.close} />
       <EventDrawer session={session} opened={log} onClose={logs.close} />
       <AlarmDrawer session={session} opened={history} onClose={histories.close} />
       <KeyboardHelp opened={help} onClose={helps.close} />

@@ -2,7 +2,15 @@ import type { Allowed, Current, SessionView } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
 import { at, session, steps } from "./example";
 import { groupSteps } from "./record/Timeline";
-import { guidance, lacksHeadset, primaryAction, redoable, redoTarget } from "./session/action";
+import {
+  awaitsHeadset,
+  guidance,
+  isBlocked,
+  lacksHeadset,
+  primaryAction,
+  redoable,
+  redoTarget,
+} from "./session/action";
 import { changesBetween, isOutdated } from "./session/useSession";
 
 const view = (
@@ -61,6 +69,7 @@ describe("an action that needs a headset", () => {
     paired_at: "2026-01-01T12:00:00Z",
     connected,
     last_seen_at: null,
+    self_test: null,
   });
 
   it("is marked as such before it is pressed, and no other is", () => {
@@ -70,6 +79,22 @@ describe("an action that needs a headset", () => {
       expect(lacksHeadset(view(at(2), [type], { devices: [headset(true)] }))).toBe(false);
     }
     expect(lacksHeadset(view(at(0), ["complete_step", "skip"]))).toBe(false);
+  });
+
+  it("cannot be pressed while none is connected, and a form in the headset waits for it too", () => {
+    const blockedWith = (allowed: Allowed, devices: SessionView["devices"]) => {
+      const shown = view(at(5), [allowed], { devices });
+      const action = primaryAction(shown);
+      return action !== null && isBlocked(shown, action);
+    };
+    expect(blockedWith("materialise", [headset(false)])).toBe(true);
+    expect(blockedWith("materialise", [headset(true)])).toBe(false);
+    expect(blockedWith("complete_step", [])).toBe(false);
+    const inHeadset = steps.map((step) => ({ ...step, forms: "headset" as const }));
+    expect(awaitsHeadset(view(at(3), [], { steps: inHeadset }))).toBe(true);
+    const devices = [headset(true)];
+    expect(awaitsHeadset(view(at(3), [], { steps: inHeadset, devices }))).toBe(false);
+    expect(awaitsHeadset(view(at(0), ["complete_step"]))).toBe(false);
   });
 });
 

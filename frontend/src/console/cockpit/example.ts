@@ -56,6 +56,7 @@ export const session: SessionView = {
   blinded: false,
   avatar: "delayed_copy",
   avatar_configuration_hash: null,
+  avatar_version: null,
   language: "en",
   version: 1,
   status: "active",

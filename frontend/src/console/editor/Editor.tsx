@@ -244,23 +244,22 @@ interface FiguresProps {
 }
 
 /** The figures of a draft, in a line: the size of its design and the length of a session. */
-function Figures({ figures }: FiguresProps): JSX.Element | null {
+function Figures({ figures }: FiguresProps): JSX.Element {
   const { t, language } = useTexts();
-  if (figures === null) return null;
-  const { conditions, orders, slots, minutes } = figures;
   return (
     <dl className={`${classes.figures} numbers`}>
       {(
         [
-          ["figures.conditions", conditions],
-          ["figures.orders", orders],
-          ["figures.slots", slots],
-          ["figures.minutes", Math.round(minutes)],
+          ["figures.conditions", figures?.conditions],
+          ["figures.orders", figures?.orders],
+          ["figures.slots", figures?.slots],
+          ["figures.minutes", figures && Math.round(figures.minutes)],
         ] as const
       ).map(([key, value]) => (
         <div key={key}>
           <dd>
-            {key === "figures.minutes" ? `≈ ${number(value, language)}` : number(value, language)}
+            {key === "figures.minutes" && "≈ "}
+            {value == null ? "–" : number(value, language)}
           </dd>
           <dt>{t(key)}</dt>
         </div>

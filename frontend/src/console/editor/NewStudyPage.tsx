@@ -1,6 +1,7 @@
 /** The start of a new study: from a template, from an existing study, from a file, or empty. */
 import { Button, FileButton, Title } from "@mantine/core";
 import type { Template } from "@shared/api/drafts";
+import type { StudySummary } from "@shared/api/types";
 import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
@@ -16,6 +17,8 @@ import classes from "./NewStudy.module.css";
 export function NewStudyPage(): JSX.Element {
   const { t } = useTexts();
   useTitle(t("new.title"));
+  // What follows the lists is shown with them, or they would push it down.
+  const studies = useQuery(studiesQuery);
   return (
     <>
       <Link href="/" className={classes.crumbs ?? ""}>
@@ -27,22 +30,16 @@ export function NewStudyPage(): JSX.Element {
       <Title order={2}>{t("new.templates")}</Title>
       <Loaded query={useQuery(templatesQuery)}>
         {(templates) => (
-          <ul className={classes.cards}>
-            {templates.map((template) => (
-              <TemplateCard key={template.key} template={template} />
-            ))}
-          </ul>
+          <>
+            <ul className={classes.cards}>
+              {templates.map((template) => (
+                <TemplateCard key={template.key} template={template} />
+              ))}
+            </ul>
+            {!studies.isPending && <OtherStarts studies={studies.data ?? []} />}
+          </>
         )}
       </Loaded>
-      <div className={classes.others}>
-        <FromStudy />
-        <FromFile />
-        <StartOption icon="document" title={t("new.empty")} lead={t("new.empty.lead")}>
-          <Button component={Link} href="/new/empty" variant="default">
-            {t("new.empty.do")}
-          </Button>
-        </StartOption>
-      </div>
     </>
   );
 }
@@ -56,6 +53,25 @@ function TemplateCard({ template }: { readonly template: Template }): JSX.Elemen
         <span className={classes.about}>{inLanguage(template.description, language)}</span>
       </Link>
     </li>
+  );
+}
+
+interface StudiesProps {
+  readonly studies: readonly StudySummary[];
+}
+
+function OtherStarts({ studies }: StudiesProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.others}>
+      <FromStudy studies={studies} />
+      <FromFile />
+      <StartOption icon="document" title={t("new.empty")} lead={t("new.empty.lead")}>
+        <Button component={Link} href="/new/empty" variant="default">
+          {t("new.empty.do")}
+        </Button>
+      </StartOption>
+    </div>
   );
 }
 
@@ -79,13 +95,12 @@ function StartOption({ icon, title, lead, children }: StartOptionProps): JSX.Ele
   );
 }
 
-function FromStudy(): JSX.Element {
+function FromStudy({ studies }: StudiesProps): JSX.Element {
   const { t } = useTexts();
-  const studies = useQuery(studiesQuery);
   return (
     <StartOption icon="add" title={t("new.copy")} lead={t("new.copy.lead")}>
       <ul className={classes.list}>
-        {(studies.data ?? []).map((study) => (
+        {studies.map((study) => (
           <li key={study.key}>
             <Link href={`/new/study/${study.key}`}>{study.title}</Link>
           </li>

@@ -79,6 +79,8 @@ const theme = EditorView.theme({
     color: "var(--ink-soft)",
     borderRight: "1px solid var(--line)",
   },
+  // As wide as for three digits from the start, or the text would move when they are drawn.
+  ".cm-lineNumbers .cm-gutterElement": { minWidth: "3.6em" },
   ".cm-activeLine": { backgroundColor: "color-mix(in srgb, var(--accent) 7%, transparent)" },
   ".cm-activeLineGutter": { backgroundColor: "transparent", color: "var(--ink)" },
   "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground":

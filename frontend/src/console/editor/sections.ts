@@ -14,6 +14,7 @@ export const SECTIONS = [
   "blinding",
   "places",
   "preregistration",
+  "simulation",
 ] as const;
 export type Section = (typeof SECTIONS)[number];
 
@@ -41,6 +42,7 @@ const CLAIMED: Readonly<Record<Section, readonly string[]>> = {
   blinding: ["blinding", "on_disconnect"],
   places: ["tasks", "appearance"],
   preregistration: ["preregistration"],
+  simulation: ["simulation"],
 };
 
 /** The top-level settings of a section, in the order of the file. */

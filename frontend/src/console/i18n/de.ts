@@ -43,6 +43,7 @@ export const de: Record<keyof typeof en, string> = {
   "action.understood": "Verstanden",
   "kind.label": "Art der Sitzung",
   "kind.all": "Alle",
+  "kind.people.one": "Teilnehmende Person",
   "kind.people": "Teilnehmende",
   "kind.simulated": "Simuliert",
   "kind.test": "Test",
@@ -103,7 +104,8 @@ export const de: Record<keyof typeof en, string> = {
   "simulated.body":
     "Diese Zahlen stammen von simulierten Personen. Sie zeigen, dass die Studie funktioniert, nicht, wie Menschen reagieren würden.",
   "simulated.watermark": "SIMULIERT",
-  "simulated.session": "Simulierte Sitzung, {{scale}} × Echtzeit",
+  "simulated.session.real": "Simulierte Sitzung, in Echtzeit",
+  "simulated.session": "Simulierte Sitzung, höchstens {{scale}} × Echtzeit",
   "protocol.frozen":
     "Diese Version ist eingefroren, weil eine Sitzung begonnen hat. Eine Änderung wird zur neuen Version; vorhandene Sitzungen behalten die Version, mit der sie begonnen haben.",
   "protocol.open":

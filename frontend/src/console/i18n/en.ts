@@ -42,6 +42,7 @@ export const en = {
   "action.understood": "Understood",
   "kind.label": "Kind of session",
   "kind.all": "All",
+  "kind.people.one": "Participant",
   "kind.people": "Participants",
   "kind.simulated": "Simulated",
   "kind.test": "Test",
@@ -100,7 +101,8 @@ export const en = {
   "simulated.body":
     "These figures come from simulated participants. They show that the study works, not how people would respond.",
   "simulated.watermark": "SIMULATED",
-  "simulated.session": "Simulated session, {{scale}} × real time",
+  "simulated.session.real": "Simulated session, in real time",
+  "simulated.session": "Simulated session, at most {{scale}} × real time",
   "protocol.frozen":
     "This version is frozen because a session has started. A change becomes a new version; existing sessions keep the version they started with.",
   "protocol.open": "No session has started. This version freezes with the first one.",

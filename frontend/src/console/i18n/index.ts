@@ -5,7 +5,11 @@ import {
   type Texts,
   useTranslations,
 } from "@shared/i18n/i18n";
+import { verdictsDe, verdictsEn } from "@shared/selfTest/texts";
 import { avatarChangesDe, avatarChangesEn } from "../avatarChanges/texts";
+import { avatarsDe, avatarsEn } from "../avatarEditor/texts";
+import { tryoutDe, tryoutEn } from "../avatarEditor/tryout/texts";
+import { tuningDe, tuningEn } from "../avatarEditor/tuning/texts";
 import { bodiesDe, bodiesEn } from "../bodies/texts";
 import { bodyViewDe, bodyViewEn } from "../bodyView/texts";
 import { jointMapDe, jointMapEn } from "../captures/jointMapTexts";
@@ -22,6 +26,7 @@ import { helpPagesDe, helpPagesEn } from "../help/helpTexts";
 import { importsDe, importsEn } from "../imports/texts";
 import { instrumentsDe, instrumentsEn } from "../instruments/texts";
 import { consentDe, consentEn } from "../pages/consent/texts";
+import { selfTestsDe, selfTestsEn } from "../pages/equipment/selfTestTexts";
 import { equipmentDe, equipmentEn } from "../pages/equipment/texts";
 import { joinDe, joinEn } from "../pages/join/texts";
 import { networkDe, networkEn } from "../pages/network/texts";
@@ -32,6 +37,7 @@ import { expertDe, expertEn } from "../pages/study/suggestionTexts";
 import { studyDe, studyEn } from "../pages/study/texts";
 import { validityDe, validityEn } from "../pages/study/validityTexts";
 import { versionsDe, versionsEn } from "../pages/study/versionTexts";
+import { trackersDe, trackersEn } from "../pages/trackers/texts";
 import { preregistrationDe, preregistrationEn } from "../preregistration/texts";
 import { replayDe, replayEn } from "../replay/texts";
 import { rightsDe, rightsEn } from "../rights/texts";
@@ -47,6 +53,7 @@ import { registryDe, registryEn } from "./registries.generated";
 const allEn = {
   ...en,
   ...avatarChangesEn,
+  ...avatarsEn,
   ...peopleEn,
   ...joinEn,
   ...auditEn,
@@ -62,9 +69,14 @@ const allEn = {
   ...consentEn,
   ...expertEn,
   ...equipmentEn,
+  ...trackersEn,
+  ...selfTestsEn,
+  ...verdictsEn,
   ...capturesEn,
   ...captureViewEn,
   ...bodiesEn,
+  ...tryoutEn,
+  ...tuningEn,
   ...bodyViewEn,
   ...walkingEn,
   ...walkingModelEn,
@@ -86,6 +98,7 @@ const allEn = {
 const allDe = {
   ...de,
   ...avatarChangesDe,
+  ...avatarsDe,
   ...peopleDe,
   ...joinDe,
   ...auditDe,
@@ -101,9 +114,14 @@ const allDe = {
   ...consentDe,
   ...expertDe,
   ...equipmentDe,
+  ...trackersDe,
+  ...selfTestsDe,
+  ...verdictsDe,
   ...capturesDe,
   ...captureViewDe,
   ...bodiesDe,
+  ...tryoutDe,
+  ...tuningDe,
   ...bodyViewDe,
   ...walkingDe,
   ...walkingModelDe,

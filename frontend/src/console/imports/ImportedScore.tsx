@@ -8,7 +8,8 @@ import classes from "./Imports.module.css";
 
 export function ImportedScore({ result }: { readonly result: ScoreResult }): JSX.Element {
   const { t, language } = useTexts();
-  const formatted = (value: number): string => number(value, language, 2);
+  const formatted = (value: number | null): string =>
+    value === null ? "–" : number(value, language, 2);
   const exact = (value: number | null): string =>
     value === null ? "–" : decimals(value, language, 2);
   return (
@@ -56,10 +57,16 @@ export function ImportedScore({ result }: { readonly result: ScoreResult }): JSX
                     {one.a} – {one.b}
                   </th>
                   <td>{one.n}</td>
-                  <td>{formatted(one.w)}</td>
-                  <td>{formatP(one.p)}</td>
-                  <td>{formatP(one.p_holm)}</td>
-                  <td>{exact(one.rank_biserial)}</td>
+                  {one.degenerate === null ? (
+                    <>
+                      <td>{formatted(one.w)}</td>
+                      <td>{formatP(one.p)}</td>
+                      <td>{formatP(one.p_holm)}</td>
+                      <td>{exact(one.rank_biserial)}</td>
+                    </>
+                  ) : (
+                    <td colSpan={4}>{t("imports.degenerate", { n: one.n })}</td>
+                  )}
                 </tr>
               ))}
             </tbody>
@@ -79,4 +86,5 @@ export function ImportedScore({ result }: { readonly result: ScoreResult }): JSX
 }
 
 /** A p-value as papers print it: without a zero before the decimal point. */
-const formatP = (p: number): string => (p < 0.001 ? "< .001" : p.toFixed(3).replace(/^0/, ""));
+const formatP = (p: number | null): string =>
+  p === null ? "–" : p < 0.001 ? "< .001" : p.toFixed(3).replace(/^0/, "");

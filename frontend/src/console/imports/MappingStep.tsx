@@ -13,6 +13,7 @@ import { CheckPanel } from "./CheckPanel";
 import { ColumnFields } from "./ColumnFields";
 import classes from "./Imports.module.css";
 import { ItemColumns } from "./ItemColumns";
+import { OfferPanel } from "./OfferPanel";
 import type { OpenedFile } from "./readText";
 import { WordFields } from "./WordFields";
 
@@ -48,6 +49,9 @@ export function MappingStep({ study, file, preview, onPreview, onDone }: StepPro
         <Notice tone="warn" title={t("imports.unknown")}>
           {t("imports.unknown.body")}
         </Notice>
+      )}
+      {(preview.offer !== null || preview.left_out.length > 0) && (
+        <OfferPanel study={study} preview={preview} onPreview={onPreview} />
       )}
       <ColumnFields preview={preview} mapping={mapping} onChange={change} onPreview={onPreview} />
       {items.data !== undefined && (

@@ -5,11 +5,12 @@ import type { DataKind, StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { queryOptions, useQuery } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import page from "../pages/study/StudyPage.module.css";
 import { usePermissions } from "../permissions";
+import { useKind } from "../ui/chosenKind";
 import { EmptyState } from "../ui/EmptyState";
 import { KindFilter } from "../ui/KindFilter";
 import { Loaded } from "../ui/Loaded";
@@ -19,7 +20,7 @@ import classes from "./Preregistration.module.css";
 
 export function PreregistrationTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const [kind, setKind] = useState<DataKind>("people");
+  const [kind, setKind] = useKind(study.key);
   const query = useQuery(preregistrationQuery(study.key, kind));
   return (
     <>

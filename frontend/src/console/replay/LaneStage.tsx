@@ -70,7 +70,10 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
           <span className={classes.marks}>
             <MarksLegend marks={marksAt(lane.replay.avatar_settings, time)} />
           </span>
-          <StageLegend ghost={figures.length > 1} sides={figures[0]?.worn === undefined} />
+          <StageLegend
+            ghost={figures.length > 1 && mode !== "eyes"}
+            sides={figures[0]?.worn === undefined}
+          />
         </div>
       )}
     </section>

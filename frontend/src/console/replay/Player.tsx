@@ -1,6 +1,6 @@
 /** One phase, or two side by side, played on one clock. */
 import { Center, Checkbox, Loader } from "@mantine/core";
-import { useDisclosure } from "@mantine/hooks";
+import { useDisclosure, useLocalStorage } from "@mantine/hooks";
 import { isApiError } from "@shared/api/request";
 import type { SessionView } from "@shared/api/types";
 import type { CameraMode, CameraSide } from "@shared/stage/figure";
@@ -97,7 +97,10 @@ const CAMERAS: readonly CameraMode[] = ["orbit", "follow", "eyes"];
 function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element {
   const duration = seconds(Math.max(...lanes.map(({ replay }) => replay.duration_s)));
   const playback = usePlayback(duration, { time: seconds(params.time), loop: false });
-  const [mode, setMode] = useState<CameraMode>("orbit");
+  const [mode, setMode] = useLocalStorage<CameraMode>({
+    key: "reembody.replay.camera",
+    defaultValue: "orbit",
+  });
   const [ghost, setGhost] = useState(true);
   const [boxes, setBoxes] = useState(true);
   const [at, setAt] = useState(0);
@@ -129,6 +132,7 @@ function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element
         <Options
           lanes={lanes}
           ghost={ghost}
+          isGhostSeen={mode !== "eyes"}
           boxes={boxes}
           onGhost={setGhost}
           onBoxes={setBoxes}
@@ -183,6 +187,8 @@ function useStages() {
 interface OptionsProps {
   readonly lanes: readonly Lane[];
   readonly ghost: boolean;
+  /** Seen through the eyes, the one who sees has no ghost. */
+  readonly isGhostSeen: boolean;
   readonly boxes: boolean;
   readonly onGhost: (ghost: boolean) => void;
   readonly onBoxes: (boxes: boolean) => void;
@@ -191,7 +197,7 @@ interface OptionsProps {
 
 /** The options of the stage: what is shown, and from where. */
 function Options(props: OptionsProps): JSX.Element {
-  const { lanes, ghost, boxes, onGhost, onBoxes, camera } = props;
+  const { lanes, ghost, isGhostSeen, boxes, onGhost, onBoxes, camera } = props;
   const { t } = useTexts();
   const isFull = lanes.some(({ movement }) => movement?.avatar != null);
   const isWorn = lanes.some(({ replay }) => replay.humanoid != null);
@@ -206,6 +212,7 @@ function Options(props: OptionsProps): JSX.Element {
             size="xs"
             label={t("replay.ghost")}
             checked={ghost}
+            disabled={!isGhostSeen}
             onChange={(event) => onGhost(event.currentTarget.checked)}
           />
         )}

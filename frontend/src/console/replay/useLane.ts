@@ -7,7 +7,7 @@ import type { PointMotion } from "@shared/stage/motion";
 import type { BodyModel } from "@shared/stage/skin/bodyModel";
 import { queryOptions, useQuery } from "@tanstack/react-query";
 import { useMemo } from "react";
-import { wornBy } from "../bodyView/worn";
+import { hipsScaleOf, wornBy } from "../bodyView/worn";
 import { AVATAR_MAP, rolesFrom } from "../captures/bodyJoints";
 import { sessionQuery } from "../queries";
 import { isOver, usePhaseName } from "../steps";
@@ -58,18 +58,29 @@ export function useFiguresOf(
   const settings = replay?.avatar_settings ?? UNCHANGED;
   return useMemo(() => {
     if (movement === null) return [];
-    const person = (key: string, motion: PointMotion, tone: Figure["tone"]): Figure => ({
+    const { participant, avatar } = movement;
+    const person = (
+      key: string,
+      motion: PointMotion,
+      tone: Figure["tone"],
+      hipsScale = 1,
+    ): Figure => ({
       key,
       motion,
       tone,
       roles: rolesFrom(motion.names, AVATAR_MAP),
-      ...wornBy(motion, model, statureM),
+      // The display shows what the participant's head sees, whatever the avatar does.
+      seenBy: participant,
+      ...wornBy(motion, model, statureM, hipsScale),
     });
-    const { participant, avatar } = movement;
     if (avatar === null) return [person("participant", participant, "solid")];
     const marks = (time: number) => marksAt(settings, time);
-    const body = { ...person("avatar", avatar, "solid"), ...(settings.length > 0 && { marks }) };
-    return ghost ? [body, person("participant", participant, "ghost")] : [body];
+    const body = {
+      ...person("avatar", avatar, "solid"),
+      ...(settings.length > 0 && { marks }),
+    };
+    if (!ghost) return [body];
+    return [body, person("participant", participant, "ghost", hipsScaleOf(avatar, participant))];
   }, [movement, ghost, model, statureM, settings]);
 }
 

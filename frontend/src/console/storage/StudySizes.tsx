@@ -5,6 +5,7 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import { KindBadge } from "../ui/badges";
+import { ScrollBox } from "../ui/tables";
 import { roundToTwoDigits } from "./figures";
 import classes from "./Storage.module.css";
 
@@ -13,22 +14,24 @@ export function StudySizes({ studies }: { readonly studies: readonly StudyRoom[]
   if (studies.length === 0) return <p className={classes.soft}>{t("storage.studies.none")}</p>;
   return (
     <>
-      <table className={`${classes.table} numbers`}>
-        <thead>
-          <tr>
-            <th scope="col">{t("storage.study")}</th>
-            <th scope="col">{t("storage.study.sessions")}</th>
-            <th scope="col">{t("storage.study.size")}</th>
-            <th scope="col">{t("storage.study.mean")}</th>
-            <th scope="col">{t("storage.study.room")}</th>
-          </tr>
-        </thead>
-        <tbody>
-          {studies.map((study) => (
-            <StudyRow key={study.key} study={study} />
-          ))}
-        </tbody>
-      </table>
+      <ScrollBox label={t("storage.studies")}>
+        <table className={`${classes.table} numbers`}>
+          <thead>
+            <tr>
+              <th scope="col">{t("storage.study")}</th>
+              <th scope="col">{t("storage.study.sessions")}</th>
+              <th scope="col">{t("storage.study.size")}</th>
+              <th scope="col">{t("storage.study.mean")}</th>
+              <th scope="col">{t("storage.study.room")}</th>
+            </tr>
+          </thead>
+          <tbody>
+            {studies.map((study) => (
+              <StudyRow key={study.key} study={study} />
+            ))}
+          </tbody>
+        </table>
+      </ScrollBox>
       <p className={classes.soft}>{t("storage.studies.note")}</p>
     </>
   );
@@ -75,30 +78,32 @@ export function LargestSessions({
   const { t, language } = useTexts();
   if (sessions.length === 0) return <p className={classes.soft}>{t("storage.sessions.none")}</p>;
   return (
-    <table className={`${classes.table} numbers`}>
-      <thead>
-        <tr>
-          <th scope="col">{t("storage.session.participant")}</th>
-          <th scope="col">{t("storage.session.kind")}</th>
-          <th scope="col">{t("storage.session.made")}</th>
-          <th scope="col">{t("storage.study.size")}</th>
-        </tr>
-      </thead>
-      <tbody>
-        {sessions.map((session) => (
-          <tr key={session.id}>
-            <td>
-              <Link href={`/sessions/${session.id}`}>{session.participant_code}</Link>
-              <span className={classes.about}>{session.study_key}</span>
-            </td>
-            <td>
-              <KindBadge kind={session.kind} />
-            </td>
-            <td>{day(session.created_at, language)}</td>
-            <td>{bytes(session.bytes, language)}</td>
+    <ScrollBox label={t("storage.sessions")}>
+      <table className={`${classes.table} numbers`}>
+        <thead>
+          <tr>
+            <th scope="col">{t("storage.session.participant")}</th>
+            <th scope="col">{t("storage.session.kind")}</th>
+            <th scope="col">{t("storage.session.made")}</th>
+            <th scope="col">{t("storage.study.size")}</th>
           </tr>
-        ))}
-      </tbody>
-    </table>
+        </thead>
+        <tbody>
+          {sessions.map((session) => (
+            <tr key={session.id}>
+              <td>
+                <Link href={`/sessions/${session.id}`}>{session.participant_code}</Link>
+                <span className={classes.about}>{session.study_key}</span>
+              </td>
+              <td>
+                <KindBadge kind={session.kind} />
+              </td>
+              <td>{day(session.created_at, language)}</td>
+              <td>{bytes(session.bytes, language)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </ScrollBox>
   );
 }

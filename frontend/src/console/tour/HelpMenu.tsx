@@ -17,6 +17,7 @@ import { usePermissions } from "../permissions";
 import { studiesQuery, studyQuery } from "../queries";
 import { Key } from "../ui/Key";
 import classes from "./HelpMenu.module.css";
+import { opened as newTab, useActOnScreen } from "./onScreen";
 import { studyLanguage, useStartTryout } from "./TryIt";
 import { startTour } from "./tourStore";
 
@@ -28,8 +29,14 @@ export function HelpMenu(): JSX.Element {
   const queries = useQueryClient();
   const start = useStartTryout();
   const can = usePermissions();
-  const listed = useQuery({ ...studiesQuery, enabled: opened && can("tryout") });
+  const act = useActOnScreen();
+  const tries = can("tryout") || can("run");
+  const listed = useQuery({ ...studiesQuery, enabled: opened && tries });
   const studyKey = choose(address, listed.data?.map(({ key }) => key) ?? []);
+  const tell = (error: unknown) => {
+    const { message, remedy } = describe(error, errors);
+    notifications.show({ color: "red", title: message, message: remedy, autoClose: 12_000 });
+  };
   const begin = useMutation({
     mutationFn: async (key: string) => {
       const study = await queries.fetchQuery({
@@ -41,10 +48,7 @@ export function HelpMenu(): JSX.Element {
         language: studyLanguage(study.languages, language),
       });
     },
-    onError: (error) => {
-      const { message, remedy } = describe(error, errors);
-      notifications.show({ color: "red", title: message, message: remedy, autoClose: 12_000 });
-    },
+    onError: tell,
   });
   return (
     <Menu
@@ -61,7 +65,7 @@ export function HelpMenu(): JSX.Element {
           size="lg"
           aria-label={t("help.title")}
           title={t("help.title")}
-          loading={begin.isPending}
+          loading={begin.isPending || act.isPending}
         >
           <Icon name="help" />
         </ActionIcon>
@@ -85,6 +89,20 @@ export function HelpMenu(): JSX.Element {
             {t("help.try")}
             <span className={classes.hint}>
               {studyKey === null && listed.isSuccess ? t("help.noStudy") : t("help.try.hint")}
+            </span>
+          </Menu.Item>
+        )}
+        {can("run") && (
+          <Menu.Item
+            leftSection={<Icon name="headset" size={16} />}
+            disabled={studyKey === null}
+            onClick={() =>
+              studyKey !== null && act.mutate({ studyKey, tab: newTab() }, { onError: tell })
+            }
+          >
+            {t("help.act")}
+            <span className={classes.hint}>
+              {studyKey === null && listed.isSuccess ? t("help.noStudy") : t("help.act.hint")}
             </span>
           </Menu.Item>
         )}

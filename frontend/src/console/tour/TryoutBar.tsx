@@ -35,10 +35,16 @@ export function TryoutBar(): JSX.Element | null {
     navigate(`/sessions/${session}`);
     if (!wasSeen()) startTour();
   }, [tryout, session, queries, navigate]);
+  // A finished one has been read when somebody goes on to another page.
+  const isOver = tryout?.state === "done" || tryout?.state === "stopped";
+  const [overAt, setOverAt] = useState<string | null>(null);
+  if (isOver && overAt === null) setOverAt(address);
+  if (!isOver && overAt !== null) setOverAt(null);
   const wasOn = useRef(false);
   if (tryout !== null && isOn(tryout)) wasOn.current = true;
   // Do not report one that had ended before the page was opened.
   if (tryout === null || !wasOn.current || dismissed === tryout.started_at) return null;
+  if (isOver && overAt !== null && overAt !== address) return null;
   const watching = session !== null && address === `/sessions/${session}`;
   return (
     <Bar

@@ -36,6 +36,22 @@ export function ListTable({
   );
 }
 
+interface ScrollBoxProps {
+  readonly label: string;
+  readonly className?: string | undefined;
+  readonly children: ReactNode;
+}
+
+/** What may be wider than the window, such as a table: it scrolls sideways, also by keyboard. */
+export function ScrollBox({ label, className = "", children }: ScrollBoxProps): JSX.Element {
+  return (
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with the keyboard
+    <section className={`${numbers.scroll} ${className}`} aria-label={label} tabIndex={0}>
+      {children}
+    </section>
+  );
+}
+
 interface NumbersTableProps {
   readonly label: string;
   readonly columns: readonly string[];
@@ -51,8 +67,7 @@ export function NumbersTable({
   className = "",
 }: NumbersTableProps): JSX.Element {
   return (
-    // biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with the keyboard
-    <section className={`${numbers.scroll} ${className}`} aria-label={label} tabIndex={0}>
+    <ScrollBox label={label} className={className}>
       <table className={`${numbers.table} numbers`}>
         <thead>
           <tr>
@@ -73,6 +88,6 @@ export function NumbersTable({
           ))}
         </tbody>
       </table>
-    </section>
+    </ScrollBox>
   );
 }

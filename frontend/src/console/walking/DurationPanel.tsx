@@ -21,7 +21,7 @@ type ChartKind = "histogram" | "ecdf";
 export function DurationPanel({ prediction, busy }: DurationPanelProps): JSX.Element {
   const { t, language } = useTexts();
   const [chartKind, setChartKind] = useState<ChartKind>("histogram");
-  const words = useDurationWords();
+  const words = useDurationWords(prediction.model);
   const figure = useMemo(
     () => durationFigure(prediction, words, chartKind),
     [prediction, words, chartKind],
@@ -81,6 +81,7 @@ function Summary({ prediction }: { readonly prediction: Prediction }): JSX.Eleme
   return (
     <p className={classes.soft}>
       {t("walking.told", { count: number(count, language), seed, lost })}{" "}
+      {prediction.model === "prob" && `${t("walking.prob.told")} `}
       {Object.entries(dependencies)
         .map(([name, value]) =>
           assumed.includes(name)
@@ -106,22 +107,22 @@ function ExtrapolationNotice({
   return <Notice tone="warn">{t("walking.outside", { what })}</Notice>;
 }
 
-function useDurationWords(): DurationWords {
+function useDurationWords(model: Prediction["model"]): DurationWords {
   const { t, language } = useTexts();
-  // Depends on the language alone: a new table of words at each render would redraw the figure.
+  // Depends on language and model alone: a new table of words at each render would redraw the figure.
   // biome-ignore lint/correctness/useExhaustiveDependencies: `t` follows the language.
   return useMemo(
     () => ({
       time: t("walking.axis.time"),
       walks: t("walking.axis.walks"),
       share: t("walking.axis.share"),
-      drawn: t("walking.prob"),
+      drawn: t(`walking.${model}`),
       median: t("walking.median"),
       half: t("walking.band.half"),
       ninety: t("walking.band.ninety"),
       stat: t("walking.stat"),
       adapt: t("walking.adapt"),
     }),
-    [language],
+    [language, model],
   );
 }

@@ -2,7 +2,7 @@
 import { Figure } from "@charts/Figure";
 import { Button, Title } from "@mantine/core";
 import { type Model, type Range, walking } from "@shared/api/walking";
-import { dateTime, number } from "@shared/format";
+import { dateTime, decimals, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useMemo } from "react";
@@ -11,6 +11,7 @@ import { nameOf } from "../account";
 import { type Key, useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
+import { ScrollBox } from "../ui/tables";
 import { useParameter } from "./dependencyNames";
 import { FitProgress, ModelActions } from "./ModelTable";
 import { modelQuery } from "./queries";
@@ -62,6 +63,7 @@ function ModelDetails({ model }: { readonly model: Model }): JSX.Element {
       <div className={classes.ask}>
         <div className={classes.column}>
           <About model={model} />
+          {model.summary !== null && <PredictedDurations summary={model.summary} />}
           {model.summary !== null && <HeldOutWalks model={model} summary={model.summary} />}
         </div>
         {model.summary !== null && <Census model={model} summary={model.summary} />}
@@ -146,6 +148,68 @@ const Fact = ({ name, value }: { readonly name: string; readonly value: string }
   </>
 );
 
+function PredictedDurations({ summary }: { readonly summary: Summary }): JSX.Element | null {
+  const { t, language } = useTexts();
+  const { predicted } = summary;
+  if (predicted === null || predicted === undefined) return null;
+  const noInterval = predicted[0]?.no_interval;
+  const given = noInterval === null || noInterval === undefined;
+  const s = (value: number) => decimals(value, language, 3);
+  const percent = (share: number) => decimals(100 * share, language, 0);
+  return (
+    <section className={classes.card}>
+      <Title order={2} size="h3">
+        {t("walking.predicted")}
+      </Title>
+      {predicted.length === 0 ? (
+        <p className={classes.soft}>{t("walking.predicted.none")}</p>
+      ) : (
+        <>
+          <p className={classes.soft}>{t("walking.predicted.lead")}</p>
+          <table className={classes.numbersTable}>
+            <thead>
+              <tr>
+                <th>{t("walking.predicted.method")}</th>
+                <th>{t("walking.predicted.crps")}</th>
+                <th>{t(given ? "walking.predicted.less" : "walking.predicted.lessAlone")}</th>
+                <th>{t("walking.predicted.inside")}</th>
+              </tr>
+            </thead>
+            <tbody>
+              {predicted.map((one) => {
+                const [less, from, to] = one.crps_less_s;
+                return (
+                  <tr key={one.method}>
+                    <td>{t(`walking.predicted.${one.method}` as Key)}</td>
+                    <td className="numbers">{s(one.crps_s)}</td>
+                    <td className="numbers">
+                      {one.method === "mixed"
+                        ? "–"
+                        : from === null || to === null
+                          ? s(less)
+                          : t("walking.predicted.range", {
+                              value: s(less),
+                              from: s(from),
+                              to: s(to),
+                            })}
+                    </td>
+                    <td className="numbers">
+                      {percent(one.coverage_50)} / {percent(one.coverage_90)}
+                    </td>
+                  </tr>
+                );
+              })}
+            </tbody>
+          </table>
+          {!given && (
+            <p className={classes.soft}>{t("walking.predicted.noInterval", { why: noInterval })}</p>
+          )}
+        </>
+      )}
+    </section>
+  );
+}
+
 function HeldOutWalks({ summary }: PartProps): JSX.Element {
   const { t, language } = useTexts();
   const n = (value: number) => number(value, language, 3);
@@ -156,26 +220,28 @@ function HeldOutWalks({ summary }: PartProps): JSX.Element {
         {t("walking.leftOut")}
       </Title>
       <p className={classes.soft}>{t("walking.leftOut.lead")}</p>
-      <table className={classes.numbersTable}>
-        <thead>
-          <tr>
-            <th>{t("walking.leftOut.what")}</th>
-            <th>{t("walking.leftOut.mean")}</th>
-            <th>{t("walking.leftOut.sd")}</th>
-            <th>{t("walking.leftOut.n")}</th>
-          </tr>
-        </thead>
-        <tbody>
-          {(["neighbours", "nodes", "people"] as const).map((name) => (
-            <tr key={name}>
-              <td>{t(`walking.leftOut.${name}`)}</td>
-              <td className="numbers">{n(summary.left_out[name].mean_percent)}</td>
-              <td className="numbers">{n(summary.left_out[name].sd_percent)}</td>
-              <td className="numbers">{number(summary.left_out[name].entries, language)}</td>
+      <ScrollBox label={t("walking.leftOut")}>
+        <table className={classes.numbersTable}>
+          <thead>
+            <tr>
+              <th>{t("walking.leftOut.what")}</th>
+              <th>{t("walking.leftOut.mean")}</th>
+              <th>{t("walking.leftOut.sd")}</th>
+              <th>{t("walking.leftOut.n")}</th>
             </tr>
-          ))}
-        </tbody>
-      </table>
+          </thead>
+          <tbody>
+            {(["neighbours", "nodes", "people"] as const).map((name) => (
+              <tr key={name}>
+                <td>{t(`walking.leftOut.${name}`)}</td>
+                <td className="numbers">{n(summary.left_out[name].mean_percent)}</td>
+                <td className="numbers">{n(summary.left_out[name].sd_percent)}</td>
+                <td className="numbers">{number(summary.left_out[name].entries, language)}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </ScrollBox>
       {best !== undefined && (
         <p className={classes.soft}>
           {t("walking.leftOut.crps", { value: n(best.crps_s), tried: summary.readings.length })}

@@ -44,7 +44,7 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
           value={key}
           onChange={(value) => value !== null && setChosenKey(value)}
           allowDeselect={false}
-          miw={460}
+          w="min(460px, 100%)"
         />
         {canWrite && (
           <FileButton

@@ -1,7 +1,8 @@
 /** The list of sets of walks: who walked, how many walks, how far. */
 import { Table } from "@mantine/core";
 import { type WalkSet, walking } from "@shared/api/walking";
-import { number } from "@shared/format";
+import { decimals, number } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
@@ -26,7 +27,8 @@ function Row({ set }: { readonly set: WalkSet }): JSX.Element {
   const { t, language } = useTexts();
   const canWrite = usePermissions()("walking");
   const { census, duration_s: duration, walks, people } = set.summary;
-  const n = (value: number) => number(value, language);
+  // The same decimals in every row, so that sets can be compared.
+  const n = (value: number) => decimals(value, language, 2);
   const [first, second, third] = census.quartiles_m;
   return (
     <Table.Tr>
@@ -34,8 +36,21 @@ function Row({ set }: { readonly set: WalkSet }): JSX.Element {
         <span className={classes.title}>{set.title}</span>{" "}
         {set.kind === "synthetic" && <Synthetic />}
         <span className={classes.sub}>
-          {t("walking.walksOf", { walks: n(walks), people: n(people) })}
+          {t("walking.walksOf", {
+            walks: number(walks, language),
+            people: number(people, language),
+          })}
         </span>
+        {(set.summary.assumed ?? []).map((text) => (
+          <span key={text} className={classes.sub}>
+            {t("walking.set.assumed", { text })}
+          </span>
+        ))}
+        {(set.summary.doubts ?? []).map((text) => (
+          <span key={text} className={classes.doubt}>
+            <Icon name="alert" size={14} /> {t("walking.set.doubt", { text })}
+          </span>
+        ))}
       </Table.Td>
       <Table.Td>
         <Origin set={set} />

@@ -67,6 +67,22 @@ export const walkingModelEn = {
   "walking.leftOut.people": "whole people, predicted from the others",
   "walking.leftOut.crps":
     "Mean error of predicted durations for people who were left out (CRPS): {{value}} s; the best of the {{tried}} ways of reading the maps that were compared.",
+  "walking.predicted": "Durations of people left out",
+  "walking.predicted.lead":
+    "A quarter of the people at a time is left out and predicted from the others, by this model (mixed) and by three plain baselines that learn from the same walks. No method is close to reality as such: these figures hold for these walks and these baselines.",
+  "walking.predicted.method": "Method",
+  "walking.predicted.crps": "Error, CRPS (s)",
+  "walking.predicted.less": "mixed better by (s), 95 % interval over people",
+  "walking.predicted.lessAlone": "mixed better by (s)",
+  "walking.predicted.inside": "Inside 50 / 90 % (%)",
+  "walking.predicted.mixed": "mixed",
+  "walking.predicted.constant speed": "constant speed",
+  "walking.predicted.line": "line through distance",
+  "walking.predicted.log-log": "log-log line",
+  "walking.predicted.none":
+    "Too few people to leave any out: with two, one is left to learn from. How well this model predicts others is not known.",
+  "walking.predicted.range": "{{value}} ({{from}} to {{to}})",
+  "walking.predicted.noInterval": "No interval: {{why}}.",
   "walking.census": "How long the paths are",
   "walking.census.told":
     "Half of the paths are {{from}} to {{to}} m long (median {{median}} m), 95 % up to {{cutoff}} m.",
@@ -140,6 +156,22 @@ export const walkingModelDe: Readonly<Record<keyof typeof walkingModelEn, string
   "walking.leftOut.people": "ganze Personen, vorhergesagt aus den anderen",
   "walking.leftOut.crps":
     "Mittlerer Fehler der vorhergesagten Dauer bei ausgelassenen Personen (CRPS): {{value}} s; die beste von {{tried}} verglichenen Lesarten der Karten.",
+  "walking.predicted": "Dauern ausgelassener Personen",
+  "walking.predicted.lead":
+    "Jeweils ein Viertel der Personen wird ausgelassen und aus den anderen vorhergesagt: von diesem Modell (mixed) und von drei einfachen Vergleichen, die aus denselben Gängen lernen. Kein Verfahren ist an sich wirklichkeitsnah: Die Zahlen gelten für diese Gänge und diese Vergleiche.",
+  "walking.predicted.method": "Verfahren",
+  "walking.predicted.crps": "Fehler, CRPS (s)",
+  "walking.predicted.less": "mixed besser um (s), 95-%-Intervall über Personen",
+  "walking.predicted.lessAlone": "mixed besser um (s)",
+  "walking.predicted.inside": "In 50 / 90 % (%)",
+  "walking.predicted.mixed": "mixed",
+  "walking.predicted.constant speed": "gleichbleibende Geschwindigkeit",
+  "walking.predicted.line": "Gerade über die Strecke",
+  "walking.predicted.log-log": "Gerade, doppelt logarithmisch",
+  "walking.predicted.none":
+    "Zu wenige Personen, um jemanden auszulassen: Bei zweien bleibt eine zum Lernen. Wie gut dieses Modell andere vorhersagt, ist nicht bekannt.",
+  "walking.predicted.range": "{{value}} ({{from}} bis {{to}})",
+  "walking.predicted.noInterval": "Kein Intervall (Wortlaut des Servers): {{why}}.",
   "walking.census": "Wie lang die Wege sind",
   "walking.census.told":
     "Die Hälfte der Wege ist {{from}} bis {{to}} m lang (Median {{median}} m), 95 % bis zu {{cutoff}} m.",

@@ -59,7 +59,10 @@ export const walkingEn = {
   "walking.median": "median",
   "walking.band.half": "50 % of walks",
   "walking.band.ninety": "90 % of walks",
+  "walking.mixed": "mixed (people and single walks differ)",
   "walking.prob": "prob (randomly sampled walks)",
+  "walking.prob.told":
+    "This model was fitted before travel times were learnt with effects of people: it predicts with prob. Fit it again for mixed.",
   "walking.stat": "stat (the same parameters for every walk)",
   "walking.adapt": "adapt (one per path)",
   "walking.drawing": "Drawing the figure",
@@ -151,7 +154,10 @@ export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
   "walking.median": "Median",
   "walking.band.half": "50 % der Gänge",
   "walking.band.ninety": "90 % der Gänge",
+  "walking.mixed": "mixed (Personen und einzelne Gänge unterscheiden sich)",
   "walking.prob": "prob (zufällig gezogene Gänge)",
+  "walking.prob.told":
+    "Dieses Modell wurde angepasst, bevor Gehzeiten mit Personeneffekten gelernt wurden: Es sagt mit prob vorher. Passen Sie es für mixed neu an.",
   "walking.stat": "stat (dieselben Parameter für jeden Gang)",
   "walking.adapt": "adapt (eines je Weg)",
   "walking.drawing": "Die Abbildung wird gezeichnet",

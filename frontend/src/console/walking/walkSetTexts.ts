@@ -21,6 +21,9 @@ export const walkSetEn = {
   "walking.sets.none": "No walks yet",
   "walking.sets.none.body":
     "Add a table of tracks, captures of people walking, or synthetic walkers.",
+  "walking.set.assumed": "Assumed: {{text}}.",
+  "walking.set.doubt":
+    "{{text}}. Check the unit of x and y, and the rate; then add the walks again.",
   "walking.sets.new": "New walks",
   "walking.sets.way": "Where the walks come from",
   "walking.sets.add": "Add",
@@ -93,6 +96,9 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
   "walking.sets.none": "Noch keine Gänge",
   "walking.sets.none.body":
     "Fügen Sie eine Tabelle mit Spuren, Aufnahmen gehender Personen oder synthetische Geher hinzu.",
+  "walking.set.assumed": "Angenommen: {{text}}.",
+  "walking.set.doubt":
+    "{{text}}. Prüfen Sie die Einheit von x und y und die Rate, und fügen Sie die Gänge neu hinzu.",
   "walking.sets.new": "Neue Gänge",
   "walking.sets.way": "Woher die Gänge kommen",
   "walking.sets.add": "Hinzufügen",

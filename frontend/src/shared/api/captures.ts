@@ -16,6 +16,7 @@ export type JointMapView = Schemas["JointMapView"];
 export type JointSource = JointMapView["sources"][string];
 export type Verification = Schemas["VerificationView"];
 export type Walker = Schemas["WalkerView"];
+export type AnatomyNotice = Schemas["Notice"];
 export type AvatarWalker = Schemas["AvatarWalkerView"];
 export type MovementFormat = NonNullable<
   operations["get_retargeted_api_captures__capture_id__retargeted_get"]["parameters"]["query"]["format"]
@@ -70,6 +71,12 @@ export const captures = {
           path: { capture_id: id },
           query: { avatars: [...avatars], lock_feet: lockFeet },
         },
+      }),
+    ),
+  generatedVerification: (avatars: readonly string[]) =>
+    answer<Verification>(
+      server.GET("/api/captures/generated/verification", {
+        params: { query: { avatars: [...avatars] } },
       }),
     ),
   fileUrl: (id: string, companion: boolean) => `${path(id)}/file?companion=${companion}`,

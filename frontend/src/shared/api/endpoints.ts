@@ -19,6 +19,7 @@ import type {
   Receipt,
   RefusalWish,
   SessionEvent,
+  SessionReceipt,
   SessionSummary,
   SessionView,
   StoredAnswers,
@@ -89,6 +90,8 @@ export const sessions = {
     answer<AvatarChoices>(server.GET("/api/sessions/{session_id}/avatar-choices", session(id))),
   events: (id: string) =>
     answer<readonly SessionEvent[]>(server.GET("/api/sessions/{session_id}/events", session(id))),
+  receipt: (id: string) =>
+    answer<SessionReceipt>(server.GET("/api/sessions/{session_id}/receipt", session(id))),
   alarms: (id: string) =>
     answer<readonly Alarm[]>(server.GET("/api/sessions/{session_id}/alarms", session(id))),
   answers: (id: string) =>

@@ -4,12 +4,14 @@ import type { components } from "./schema";
 
 type Schemas = components["schemas"];
 export type ImportMapping = Required<Schemas["Mapping"]>;
-export type ImportPreview = Omit<Schemas["LookView"], "proposal"> & {
+export type ImportPreview = Omit<Schemas["LookView"], "proposal" | "offer"> & {
   readonly proposal: ImportMapping | null;
+  readonly offer: OfferedInstrument | null;
 };
 export type ImportCheck = Schemas["CheckView"];
 export type CellProblem = Schemas["CellProblem"];
 export type AnswerImport = Schemas["ImportView"];
+export type OfferedInstrument = Required<Schemas["OfferedInstrument"]>;
 export type ImportDetail = Schemas["ImportDetail"];
 export type ScoreResult = Schemas["ScoreResult"];
 
@@ -31,6 +33,10 @@ export const imports = {
   check: (key: string, text: string, mapping: ImportMapping) =>
     answer<ImportCheck>(
       server.POST("/api/studies/{key}/imports/check", { ...of(key), body: { text, mapping } }),
+    ),
+  makeInstrument: (key: string, offered: OfferedInstrument) =>
+    answer<Schemas["LookedInstrument"]>(
+      server.POST("/api/studies/{key}/imports/instrument", { ...of(key), body: offered }),
     ),
   takeIn: (key: string, fileName: string, text: string, mapping: ImportMapping) =>
     answer<AnswerImport>(

@@ -1,4 +1,4 @@
-/** Requests for consents, experts' suggestions and the measured latency of the equipment. */
+/** Requests for consents, experts' suggestions, the equipment's latency and headsets' self-tests. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type { TabletState } from "./types";
@@ -10,6 +10,7 @@ export type ConsentGiven = Schemas["ConsentGiven"];
 export type Suggestion = Schemas["SuggestionView"];
 export type NewSuggestion = Schemas["NewSuggestion"];
 export type Calibration = Schemas["CalibrationView"];
+export type SelfTest = Schemas["SelfTestView"];
 export type NewCalibration = Schemas["NewCalibration"];
 
 export const consents = {
@@ -50,4 +51,8 @@ export const calibrations = {
         body: { reason },
       }),
     ),
+};
+
+export const selfTests = {
+  list: () => answer<readonly SelfTest[]>(server.GET("/api/headset-tests")),
 };

@@ -104,6 +104,174 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/avatar-tunings": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Tunings
+         * @description Return the tunings, newest first, with the progress of those that are not ready.
+         */
+        readonly get: operations["get_tunings_api_avatar_tunings_get"];
+        readonly put?: never;
+        /**
+         * Post Tuning
+         * @description Start tuning an avatar; the response is immediate, and its view shows the progress.
+         */
+        readonly post: operations["post_tuning_api_avatar_tunings_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatar-tunings/{tuning_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Tuning
+         * @description Return one tuning with every axis: what was measured so far, or the result.
+         */
+        readonly get: operations["get_tuning_api_avatar_tunings__tuning_id__get"];
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Tuning
+         * @description Delete a tuning, or cancel it; versions that were saved of it stay.
+         */
+        readonly delete: operations["delete_tuning_api_avatar_tunings__tuning_id__delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatar-tunings/{tuning_id}/axes/{axis}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Tuning Curves
+         * @description Return the curves of one axis: the relay experiment, and a step with old and new gains.
+         */
+        readonly get: operations["get_tuning_curves_api_avatar_tunings__tuning_id__axes__axis__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatar-tunings/{tuning_id}/comparison": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Tuning Comparison
+         * @description Compare how the body follows a capture with the old gains and with the accepted ones.
+         */
+        readonly post: operations["post_tuning_comparison_api_avatar_tunings__tuning_id__comparison_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatar-tunings/{tuning_id}/configuration": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Tuning Configuration
+         * @description Return the configuration with the new gains of the accepted axes; nothing is stored.
+         */
+        readonly post: operations["post_tuning_configuration_api_avatar_tunings__tuning_id__configuration_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatar-tunings/{tuning_id}/resume": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Resume Tuning
+         * @description Resume a stopped tuning, or retry a failed one; the result is as if it had not stopped.
+         */
+        readonly post: operations["resume_tuning_api_avatar_tunings__tuning_id__resume_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatar-tunings/{tuning_id}/save": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Tuning Saved
+         * @description Save the accepted gains as an avatar's version, with the report of the tuning.
+         */
+        readonly post: operations["post_tuning_saved_api_avatar_tunings__tuning_id__save_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatar-tunings/{tuning_id}/stop": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Stop Tuning
+         * @description Stop a tuning; what it has measured is kept.
+         */
+        readonly post: operations["stop_tuning_api_avatar_tunings__tuning_id__stop_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/avatars": {
         readonly parameters: {
             readonly query?: never;
@@ -208,6 +376,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/avatars/{key}/versions/{number}/difference/{other}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Avatar Difference
+         * @description Return what changed from version `number` to version `other`: by value and by body group.
+         */
+        readonly get: operations["get_avatar_difference_api_avatars__key__versions__number__difference__other__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/avatars/{key}/versions/{number}/file": {
         readonly parameters: {
             readonly query?: never;
@@ -242,6 +430,46 @@ export interface paths {
          * @description Parse a file without storing it; return its configuration or all problems with places.
          */
         readonly post: operations["post_avatar_check_api_avatars_check_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatars/edit": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Avatar Edit
+         * @description Apply operations to a configuration without storing it: what changes, and what is lost.
+         */
+        readonly post: operations["post_avatar_edit_api_avatars_edit_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatars/model": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Avatar Model
+         * @description Return a configuration that need not be stored as a MuJoCo model; nothing is stored.
+         */
+        readonly post: operations["post_avatar_model_api_avatars_model_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -477,6 +705,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/captures/generated/verification": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Generated Verification
+         * @description Return the verification of a generated walk of eight steps, which needs no capture.
+         */
+        readonly get: operations["get_generated_verification_api_captures_generated_verification_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/copies/{copy_id}/destroyed": {
         readonly parameters: {
             readonly query?: never;
@@ -575,6 +823,26 @@ export interface paths {
          * @description Download the file; an interrupted download can be resumed (`Range`, `If-Range`).
          */
         readonly get: operations["get_export_file_api_exports__export_id__file_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/headset-tests": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Headset Tests
+         * @description Return the 200 self-tests of the lab's headsets that arrived last, the last one first.
+         */
+        readonly get: operations["get_headset_tests_api_headset_tests_get"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -1341,7 +1609,10 @@ export interface paths {
         };
         /**
          * Get Receipt
-         * @description Compute the receipt of a session from its record; blinded operators see no latencies.
+         * @description Compute the receipt of a session from its record.
+         *
+         *     Blinded readers see neither latencies nor hashes and flagged counts of the avatar's frames, and
+         *     while a phase runs no stream of reports.
          */
         readonly get: operations["get_receipt_api_sessions__session_id__receipt_get"];
         readonly put?: never;
@@ -1385,6 +1656,9 @@ export interface paths {
         /**
          * Get Streams
          * @description Return how much of each stream is on disk, for every epoch of the headset.
+         *
+         *     Blinded readers get that of the reports only between phases: a report follows every contact. Of
+         *     the avatar's frames they never get how many are flagged: that depends on its settings.
          */
         readonly get: operations["get_streams_api_sessions__session_id__streams_get"];
         readonly put?: never;
@@ -1806,6 +2080,26 @@ export interface paths {
          * @description Erase one participant's answers from all imports of a study.
          */
         readonly post: operations["post_erase_imported_api_studies__key__imports_erase_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/imports/instrument": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Offered Instrument
+         * @description Store an offered instrument, as a person has edited it, under a key that is still free.
+         */
+        readonly post: operations["post_offered_instrument_api_studies__key__imports_instrument_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -2429,6 +2723,69 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/trackers": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Trackers
+         * @description Return the doors for tracking software, and every source that sends through them.
+         */
+        readonly get: operations["get_trackers_api_trackers_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/trackers/doors/{door}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        /**
+         * Put Door
+         * @description Open or close a door, and store that for the next start of the server.
+         *
+         *     A door that cannot be opened, because another program has its port, is tried again until it is
+         *     closed.
+         */
+        readonly put: operations["put_door_api_trackers_doors__door__put"];
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/trackers/limbs": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        /**
+         * Put Limb
+         * @description Store on which limb a tracker is worn, for all sources of that name at this door.
+         */
+        readonly put: operations["put_limb_api_trackers_limbs_put"];
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/tryout": {
         readonly parameters: {
             readonly query?: never;
@@ -2566,6 +2923,48 @@ export interface paths {
          * @description Switch the session to another language of the study.
          */
         readonly put: operations["put_language_api_vr_language_put"];
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/vr/self-tests": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Self Test
+         * @description Store the report of a self-test and return the verdicts; sending it again changes nothing.
+         */
+        readonly post: operations["post_self_test_api_vr_self_tests_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/vr/self-tests/avatar": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Self Test Avatar
+         * @description Build the body to simulate in a self-test, of a person of 1.75 m; nothing is recorded.
+         *
+         *     It is that of the headset's session, or the standard one if the session has no physics avatar.
+         */
+        readonly get: operations["get_self_test_avatar_api_vr_self_tests_avatar_get"];
+        readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
         readonly options?: never;
@@ -2936,6 +3335,25 @@ export interface components {
             readonly username: string;
         };
         /**
+         * AcceptedAxes
+         * @description The axes whose new gains are accepted; all others keep their gains.
+         */
+        readonly AcceptedAxes: {
+            /** Accepted */
+            readonly accepted: readonly string[];
+        };
+        /**
+         * AcceptedConfiguration
+         * @description The tuned configuration with the accepted gains; nothing is stored.
+         */
+        readonly AcceptedConfiguration: {
+            /** Changed */
+            readonly changed: readonly components["schemas"]["GainChangeView"][];
+            readonly configuration: components["schemas"]["AvatarFile"];
+            /** Content Hash */
+            readonly content_hash: string;
+        };
+        /**
          * AccountView
          * @description The account that is signed in.
          */
@@ -3224,8 +3642,10 @@ export interface components {
          * @description The changes to the avatar that are in force: those of the study, and those of the operator.
          *
          *     `applied`: whether the headset has carried them out, or null while it has not answered;
-         *     `problem`: why it could not. `gravity`, `self_collision`, parts in a cast (`held_parts`) and
-         *     parts without collider (`passing_parts`) are those that result, with the avatar's configuration.
+         *     `problem`: why it could not, in the headset's words; null for readers who must not know the
+         *     condition, because the words may name the body. `gravity`, `self_collision`, parts in a cast
+         *     (`held_parts`) and parts without collider (`passing_parts`) are those that result, with the
+         *     avatar's configuration.
          */
         readonly AvatarChangesView: {
             /** Applied */
@@ -3295,6 +3715,43 @@ export interface components {
             readonly self_collision: boolean;
         };
         /**
+         * AvatarEdit
+         * @description Operations to apply to a configuration, one after the other.
+         */
+        readonly AvatarEdit: {
+            readonly configuration: components["schemas"]["AvatarFile"];
+            /** Operations */
+            readonly operations: readonly (components["schemas"]["SetGains"] | components["schemas"]["SetLimits"] | components["schemas"]["SetMotion"] | components["schemas"]["SetAxes"] | components["schemas"]["EditJoint"] | components["schemas"]["SetJoints"] | components["schemas"]["ConvertTemplate"] | components["schemas"]["Mirror"] | components["schemas"]["SetMasses"] | components["schemas"]["SetBody"] | components["schemas"]["SetModel"] | components["schemas"]["SetColliders"] | components["schemas"]["SetLayers"] | components["schemas"]["SetDelays"] | components["schemas"]["SetCompliance"] | components["schemas"]["Lock"] | components["schemas"]["Unlock"] | components["schemas"]["RemoveParts"] | components["schemas"]["Load"])[];
+        };
+        /**
+         * AvatarEdited
+         * @description The result of operations; nothing is stored.
+         *
+         *     If there are `problems`, `configuration` is the one that was given and nothing was changed; but
+         *     one that lacks parts of the body is edited, and the problem names what it lacks before it can be
+         *     saved.
+         *     `changed`: every value that differs from the configuration given; `lost`: what conversions
+         *     cannot keep. `joints`: the result as the single template has it, one joint per driven part;
+         *     `fits_single_template`: whether that loses nothing.
+         */
+        readonly AvatarEdited: {
+            /** Changed */
+            readonly changed: readonly components["schemas"]["ValueChangeView"][];
+            readonly configuration: components["schemas"]["AvatarFile"];
+            /** Content Hash */
+            readonly content_hash: string | null;
+            /** Fits Single Template */
+            readonly fits_single_template: boolean;
+            /** Joints */
+            readonly joints: {
+                readonly [key: string]: components["schemas"]["JointView"];
+            };
+            /** Lost */
+            readonly lost: readonly components["schemas"]["LossView"][];
+            /** Problems */
+            readonly problems: readonly components["schemas"]["OperationProblemView"][];
+        };
+        /**
          * AvatarFile
          * @description An avatar's configuration.
          *
@@ -3304,6 +3761,10 @@ export interface components {
          *     `part_colliders`. `locked_groups` are fixed at the angles of `held_deg`, or else those of the
          *     T-pose. `humanoid` is the hash of the model whose body it has, left out for a body built from
          *     the participant's measures; `mesh` colliders need one.
+         *     `layers`: the pairs of collision layers that differ from the standard matrix. `delays_ms`: body
+         *     part -> milliseconds by which it lags, in addition to the condition's latency.
+         *     `relative_masses_percent`: body part -> its share of the total mass, if not the population's.
+         *     `compliance`: group -> how it gives way when pushed; groups that are absent are stiff.
          */
         readonly AvatarFile: {
             /** Axes */
@@ -3315,6 +3776,14 @@ export interface components {
              * @enum {string}
              */
             readonly colliders: "simple" | "mesh" | "none";
+            /** Compliance */
+            readonly compliance?: {
+                readonly [key: string]: components["schemas"]["ComplianceFile"];
+            } | null;
+            /** Delays Ms */
+            readonly delays_ms?: {
+                readonly [key: string]: number;
+            } | null;
             /**
              * Format
              * @constant
@@ -3333,6 +3802,8 @@ export interface components {
             readonly hips: "carried" | "welded";
             /** Humanoid */
             readonly humanoid?: string | null;
+            /** Layers */
+            readonly layers?: readonly components["schemas"]["LayerChange"][] | null;
             /** Locked Groups */
             readonly locked_groups: readonly string[];
             /** Part Colliders */
@@ -3344,6 +3815,10 @@ export interface components {
              * @enum {string}
              */
             readonly population: "male" | "female" | "average";
+            /** Relative Masses Percent */
+            readonly relative_masses_percent?: {
+                readonly [key: string]: number;
+            } | null;
             /** Self Collision */
             readonly self_collision: boolean;
             /**
@@ -3363,19 +3838,33 @@ export interface components {
             readonly version: 1;
         };
         /**
+         * AvatarNamed
+         * @description A stored version of an avatar; `version` is null for the newest.
+         */
+        readonly AvatarNamed: {
+            /** Key */
+            readonly key: string;
+            /** Version */
+            readonly version?: number | null;
+        };
+        /**
          * AvatarSummary
          * @description A configuration in a list, in its newest version.
          *
+         *     `content_hashes` are those of all its versions, from version 1 on.
          *     `axes` counts its driven axes, `locked_axes` those that cannot move; `sessions` counts the
-         *     sessions of the reader's studies that used any of its versions.
+         *     sessions of the reader's studies that used any of its versions. Both numbers of axes are null
+         *     if the newest version was damaged in the database, so that it cannot be read.
          */
         readonly AvatarSummary: {
             /** Axes */
-            readonly axes: number;
+            readonly axes: number | null;
+            /** Content Hashes */
+            readonly content_hashes: readonly string[];
             /** Key */
             readonly key: string;
             /** Locked Axes */
-            readonly locked_axes: number;
+            readonly locked_axes: number | null;
             readonly newest: components["schemas"]["AvatarVersionView"];
             /** Sessions */
             readonly sessions: number;
@@ -3393,10 +3882,33 @@ export interface components {
             readonly text: string;
         };
         /**
+         * AvatarUse
+         * @description A version of a study that names an avatar's version, or whose sessions used its content.
+         *
+         *     `running_sessions` are those of `sessions` that have started and not ended.
+         */
+        readonly AvatarUse: {
+            /** Is Newest */
+            readonly is_newest: boolean;
+            /** Running Sessions */
+            readonly running_sessions: number;
+            /** Sessions */
+            readonly sessions: number;
+            /** Study */
+            readonly study: string;
+            /** Study Version */
+            readonly study_version: number;
+            /** Title */
+            readonly title: string;
+        };
+        /**
          * AvatarVersionDetail
          * @description A complete version; `report`: the measurements and settings of its tuning, if it was tuned.
          *
-         *     `sessions` counts the sessions of the reader's studies that used this content.
+         *     `sessions` counts the sessions of the reader's studies that used this content; `used_by` lists
+         *     these studies and those that will use it. A version is never edited, so what they use stays as
+         *     it is: an edit is saved as a new version, and a study uses it once it names it. `joints`: the
+         *     configuration as the single template has it, one joint per driven part.
          */
         readonly AvatarVersionDetail: {
             /**
@@ -3409,6 +3921,10 @@ export interface components {
             readonly configuration: components["schemas"]["AvatarFile"];
             /** Content Hash */
             readonly content_hash: string;
+            /** Joints */
+            readonly joints: {
+                readonly [key: string]: components["schemas"]["JointView"];
+            };
             /** Key */
             readonly key: string;
             /** Note */
@@ -3426,6 +3942,29 @@ export interface components {
             } | null;
             /** Sessions */
             readonly sessions: number;
+            /** Title */
+            readonly title: string;
+            /** Used By */
+            readonly used_by: readonly components["schemas"]["AvatarUse"][];
+        };
+        /**
+         * AvatarVersionDifference
+         * @description How a version differs from another one of the same avatar.
+         *
+         *     `changed` are the values, first those of the whole body, then by part and axis; `groups` sums
+         *     them up. `old` and `new` tell who saved the two versions, when and with which note.
+         */
+        readonly AvatarVersionDifference: {
+            /** Changed */
+            readonly changed: readonly components["schemas"]["ValueChangeView"][];
+            /** Groups */
+            readonly groups: readonly components["schemas"]["GroupDifference"][];
+            /** Key */
+            readonly key: string;
+            readonly new: components["schemas"]["AvatarVersionView"];
+            readonly old: components["schemas"]["AvatarVersionView"];
+            /** Same */
+            readonly same: boolean;
             /** Title */
             readonly title: string;
         };
@@ -3482,9 +4021,11 @@ export interface components {
          *     each foot as often as the source. Slides are speeds of its feet while the *source's* are down:
          *     `slide_m_s` as shown here, `slide_before_m_s` before the feet were locked, null if they are not.
          *     With locked feet, `lowered_m` is how far the hips came down at most, and `out_of_reach` counts
-         *     frames in which a foot could not be kept in place.
+         *     frames in which a foot could not be kept in place. `floor` says how deep the feet are under the
+         *     floor, and by how much the body was raised for it; `notices` what the walk shows to be wrong.
          */
         readonly AvatarWalkerView: {
+            readonly floor: components["schemas"]["FloorClearance"];
             /** Foot Slide M S */
             readonly foot_slide_m_s: number | null;
             /** Height Ratio */
@@ -3507,6 +4048,8 @@ export interface components {
             readonly mean_stride_length_m: number | null;
             /** Name */
             readonly name: string;
+            /** Notices */
+            readonly notices: readonly components["schemas"]["Notice"][];
             /** Out Of Reach */
             readonly out_of_reach: number | null;
             /** Slide Before M S */
@@ -3527,7 +4070,9 @@ export interface components {
          * @description A request for a physics avatar: the participant's stature and any other lengths measured.
          *
          *     `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
-         *     the stature. `body`: the body to wear, one of those that the study's conditions name; if left
+         *     the stature. A body with a model of its own has its own lengths and uses none of
+         *     them, but they must fit the stature there, too. `body`:
+         *     the body to wear, one of those that the study's conditions name; if left
          *     out, the body of the avatar's configuration.
          */
         readonly AvatarWish: {
@@ -3554,6 +4099,19 @@ export interface components {
             readonly high_deg: number;
             /** Low Deg */
             readonly low_deg: number;
+        };
+        /**
+         * AxisCurvesView
+         * @description The curves of one axis: its relay experiment, and steps with the old and new gains.
+         *
+         *     `relay` is null if there was no oscillation; a mirrored axis has that of the other side.
+         */
+        readonly AxisCurvesView: {
+            readonly after: components["schemas"]["StepCurveView"];
+            /** Axis */
+            readonly axis: string;
+            readonly before: components["schemas"]["StepCurveView"];
+            readonly relay: components["schemas"]["RelayCurveView"] | null;
         };
         /**
          * AxisFile
@@ -3618,7 +4176,8 @@ export interface components {
          *
          *     `at` and what was measured are null before the first calibration; `residuals_cm`: how far each
          *     goal was off in the poses that test it. `wanted`: a calibration was ordered and has not been
-         *     reported yet. `shifts_cm`: shifts in force, to the right, up and to the back.
+         *     reported yet. `shifts_cm`: shifts in force, to the right, up and to the back. `underway`: null
+         *     while the participant is not being calibrated.
          */
         readonly BodyCalibrationView: {
             /** At */
@@ -3649,6 +4208,7 @@ export interface components {
             readonly span_m: number | null;
             /** Stature M */
             readonly stature_m: number | null;
+            readonly underway: components["schemas"]["CalibrationStepView"] | null;
             /** Wanted */
             readonly wanted: boolean;
         };
@@ -3679,7 +4239,7 @@ export interface components {
              * Key
              * @enum {string}
              */
-            readonly key: "parts" | "fingers" | "rest_pose" | "proportions" | "triangles" | "hulls" | "licence" | "wearing";
+            readonly key: "parts" | "fingers" | "rest_pose" | "proportions" | "reach" | "triangles" | "hulls" | "licence" | "wearing";
             /** Limit */
             readonly limit?: number | null;
             /**
@@ -3711,6 +4271,22 @@ export interface components {
             readonly studies: readonly components["schemas"]["WornBy"][];
         };
         /**
+         * BoxToDrop
+         * @description A box for a model, which hovers out of the body's way until it is dropped.
+         */
+        readonly BoxToDrop: {
+            /**
+             * Edge M
+             * @default 0.2
+             */
+            readonly edge_m: number;
+            /**
+             * Mass Kg
+             * @default 2
+             */
+            readonly mass_kg: number;
+        };
+        /**
          * CableView
          * @description The connection of a headset by USB: run `command` here, then open `url` in the headset.
          */
@@ -3719,6 +4295,20 @@ export interface components {
             readonly command: string;
             /** Url */
             readonly url: string;
+        };
+        /**
+         * CalibrationStepView
+         * @description How far a calibration under way is; `problem`: what keeps the step from being done.
+         */
+        readonly CalibrationStepView: {
+            /** Number */
+            readonly number: number;
+            /** Problem */
+            readonly problem: string | null;
+            /** Step */
+            readonly step: string;
+            /** Total */
+            readonly total: number;
         };
         /**
          * CalibrationView
@@ -4043,7 +4633,7 @@ export interface components {
              * Code
              * @enum {string}
              */
-            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
             /**
              * Details
              * @default []
@@ -4117,6 +4707,7 @@ export interface components {
          * @description A preview of an import's result; nothing was stored. An import with problems is rejected.
          *
          *     `reversed_items`: those that the instrument's formulas reverse. `notes`: points to check.
+         *     `left_out`: columns that look like answers and are not imported.
          */
         readonly CheckView: {
             /** Conditions */
@@ -4125,6 +4716,8 @@ export interface components {
             readonly first_forms: readonly components["schemas"]["FormPreview"][];
             /** Forms */
             readonly forms: number;
+            /** Left Out */
+            readonly left_out: readonly components["schemas"]["LeftOutColumn"][];
             /** Missing Answers */
             readonly missing_answers: number;
             /** N Problems */
@@ -4213,7 +4806,7 @@ export interface components {
          * @description An operator's command, with the version of the session that their page showed.
          *
          *     Commands in `NEVER_STALE` apply to any version and may omit `expected_version`.
-         *     `avatar_changes` replaces the operator's earlier changes; left out, they are taken back.
+         *     `avatar_changes` replaces the operator's earlier changes; empty, it takes them back.
          */
         readonly CommandRequest: {
             readonly avatar_changes?: components["schemas"]["AvatarChanges"] | null;
@@ -4237,6 +4830,33 @@ export interface components {
             readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "change_avatar" | "calibrate" | "shift_tracker" | "note";
         };
         /**
+         * ComparisonAsked
+         * @description A capture on which to compare the gains before and after; null is a generated walk.
+         */
+        readonly ComparisonAsked: {
+            /** Accepted */
+            readonly accepted: readonly string[];
+            /** Capture Id */
+            readonly capture_id?: string | null;
+            /**
+             * Longest S
+             * @default 20
+             */
+            readonly longest_s: number;
+        };
+        /**
+         * ComparisonView
+         * @description How the body follows a movement with the gains before and with the accepted ones.
+         */
+        readonly ComparisonView: {
+            readonly after: components["schemas"]["FollowedBothView"];
+            readonly before: components["schemas"]["FollowedBothView"];
+            /** Duration S */
+            readonly duration_s: number;
+            /** Frames */
+            readonly frames: number;
+        };
+        /**
          * CompletionReceipt
          * @description The number of completions stored for a task phase, and the number derived from contacts.
          *
@@ -4254,6 +4874,28 @@ export interface components {
             readonly rederived: number;
             /** Stored */
             readonly stored: number;
+        };
+        /**
+         * ComplianceFile
+         * @description How a group of body parts gives way when it is pushed.
+         *
+         *     `stiffness_percent`: of the configured stiffness; the group's weight is carried if it is less
+         *     than 100. `targets`: parts of an arm or leg return to their joint angles, or to their own
+         *     direction in the world.
+         */
+        readonly ComplianceFile: {
+            /**
+             * Stiffness Percent
+             * @description %
+             * @default 100
+             */
+            readonly stiffness_percent: number;
+            /**
+             * Targets
+             * @default joint
+             * @enum {string}
+             */
+            readonly targets: "joint" | "world";
         };
         /**
          * ConditionCount
@@ -4429,6 +5071,33 @@ export interface components {
             readonly origin: "file" | "format" | "guessed" | "chosen";
             /** Value */
             readonly value: string;
+        };
+        /**
+         * ConvertTemplate
+         * @description Convert parts to the single template, or to the multiple one.
+         *
+         *     `single` gives the axes the values that one joint per part can hold, and loses the others.
+         *     `multiple` loses nothing: a configuration has the limits and gains of each axis, and those of a
+         *     single template are [-L, L] and the shared drive already.
+         */
+        readonly ConvertTemplate: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "convert";
+            /**
+             * Targets
+             * @default [
+             *       "all"
+             *     ]
+             */
+            readonly targets: readonly string[];
+            /**
+             * To
+             * @enum {string}
+             */
+            readonly to: "single" | "multiple";
         };
         /**
          * CopyLeft
@@ -4634,7 +5303,7 @@ export interface components {
         };
         /**
          * DeviceView
-         * @description A device that is paired with a session.
+         * @description A device that is paired with a session; `self_test`: what a headset makes of itself now.
          */
         readonly DeviceView: {
             /** Connected */
@@ -4655,6 +5324,7 @@ export interface components {
              * Format: date-time
              */
             readonly paired_at: string;
+            readonly self_test: components["schemas"]["RunningTest"] | null;
         };
         /**
          * DifferenceView
@@ -4693,6 +5363,79 @@ export interface components {
             readonly warn_below_bytes: number;
         };
         /**
+         * DoorView
+         * @description A door, its settings, and what came through it since it was opened.
+         *
+         *     `state` is null while it is closed; `trouble` is the kind of the reason why it failed, and
+         *     `trouble_detail` what the system says about it. `opened_by` at `opened_at`; `resumed`: the
+         *     server opened it again when it was started. `foreign`: packets that are not from Motive's
+         *     address. `unread`: packets that came faster than the door reads. `dropped`: packets that the
+         *     kernel dropped; null where the system does not say.
+         */
+        readonly DoorView: {
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** Dropped */
+            readonly dropped: number | null;
+            /** Foreign */
+            readonly foreign: number;
+            /** Interface */
+            readonly interface: string;
+            /** Is Open */
+            readonly is_open: boolean;
+            /** Multicast */
+            readonly multicast: boolean;
+            /** Opened At */
+            readonly opened_at: string | null;
+            /** Opened By */
+            readonly opened_by: string | null;
+            /** Packets */
+            readonly packets: number;
+            /** Port */
+            readonly port: number;
+            /** Resumed */
+            readonly resumed: boolean;
+            /** Server */
+            readonly server: string | null;
+            /** State */
+            readonly state: ("opening" | "open" | "failed") | null;
+            /** Trouble */
+            readonly trouble: ("port_in_use" | "no_such_address" | "forbidden" | "unreachable" | "other") | null;
+            /** Trouble Detail */
+            readonly trouble_detail: string;
+            /** Unread */
+            readonly unread: number;
+        };
+        /**
+         * DoorWish
+         * @description How a door shall be.
+         *
+         *     `interface`: the IPv4 address of this machine on which packets are taken. `port` is our own; for
+         *     NatNet it is the port of Motive's requests, and `server` the address of Motive's computer.
+         *     `multicast`: Motive sends its frames to the multicast group 239.255.42.99.
+         */
+        readonly DoorWish: {
+            /**
+             * Interface
+             * @default 127.0.0.1
+             */
+            readonly interface: string;
+            /** Is Open */
+            readonly is_open: boolean;
+            /**
+             * Multicast
+             * @default false
+             */
+            readonly multicast: boolean;
+            /** Port */
+            readonly port: number;
+            /** Server */
+            readonly server?: string | null;
+        };
+        /**
          * Doubt
          * @description Something in a session's record that cannot be true.
          *
@@ -4723,6 +5466,39 @@ export interface components {
             readonly yaml: string;
         };
         /**
+         * DriveEdit
+         * @description Values of a drive in the single template; what is left out stays.
+         */
+        readonly DriveEdit: {
+            /** Kd Nm S Per Rad */
+            readonly kd_nm_s_per_rad?: number | null;
+            /** Kp Nm Per Rad */
+            readonly kp_nm_per_rad?: number | null;
+            /** Max Torque Nm */
+            readonly max_torque_nm?: number | null;
+        };
+        /**
+         * DriveFile
+         * @description Stiffness, damping and greatest torque of a drive.
+         */
+        readonly DriveFile: {
+            /**
+             * Kd Nm S Per Rad
+             * @description damper, N m s per radian
+             */
+            readonly kd_nm_s_per_rad: number;
+            /**
+             * Kp Nm Per Rad
+             * @description spring, N m per radian
+             */
+            readonly kp_nm_per_rad: number;
+            /**
+             * Max Torque Nm
+             * @description greatest torque, N m
+             */
+            readonly max_torque_nm: number;
+        };
+        /**
          * DuplicateRequest
          * @description The key of a copy of a study, and optionally its title by language.
          */
@@ -4741,6 +5517,39 @@ export interface components {
         readonly EditedFile: {
             /** Yaml */
             readonly yaml: string;
+        };
+        /**
+         * EditJoint
+         * @description Edit parts in the single template, with one joint each.
+         *
+         *     `low_deg`, `high_deg` and `drive` are of the primary axis; `limits_deg` are the symmetric limits
+         *     of the other axes by their letters, and `shared_drive` is their drive. Only what is given
+         *     changes: a symmetric limit replaces the limit that lies further from the T-pose.
+         */
+        readonly EditJoint: {
+            readonly drive?: components["schemas"]["DriveEdit"] | null;
+            /**
+             * High Deg
+             * @description degrees from the T-pose
+             */
+            readonly high_deg?: number | null;
+            /** Limits Deg */
+            readonly limits_deg?: {
+                readonly [key: string]: number;
+            };
+            /**
+             * Low Deg
+             * @description degrees from the T-pose
+             */
+            readonly low_deg?: number | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "edit_joint";
+            readonly shared_drive?: components["schemas"]["DriveEdit"] | null;
+            /** Targets */
+            readonly targets: readonly string[];
         };
         /**
          * EditRequest
@@ -5170,6 +5979,95 @@ export interface components {
             readonly vector: readonly number[];
         };
         /**
+         * FloorClearance
+         * @description How deep an avatar's feet are under the ground, and what keeping them above it costs.
+         *
+         *     Attributes:
+         *         sunk_m: greatest depth of a joint or end of the feet without any correction, at least 0.
+         *         left_m: the same in the result.
+         *         raised_m, mean_raised_m: by how much the body is raised at most, and on average over all
+         *             frames; feet float by as much. Zero with locked feet and on uneven ground.
+         *         lifted_m: with locked feet on flat ground, by how much a single foot is lifted at most.
+         */
+        readonly FloorClearance: {
+            /** Left M */
+            readonly left_m: number;
+            /**
+             * Lifted M
+             * @default 0
+             */
+            readonly lifted_m: number;
+            /** Mean Raised M */
+            readonly mean_raised_m: number;
+            /** Raised M */
+            readonly raised_m: number;
+            /** Sunk M */
+            readonly sunk_m: number;
+        };
+        /**
+         * FollowedBothView
+         * @description The errors in an empty space, and on a floor.
+         *
+         *     `rms_error_deg` and `rms_torque_nm`: by driven axis, in the empty space.
+         */
+        readonly FollowedBothView: {
+            /** Clipped Share */
+            readonly clipped_share: number;
+            /** Frames */
+            readonly frames: number;
+            readonly free: components["schemas"]["SpreadView"];
+            /** Mean Error Deg */
+            readonly mean_error_deg: number;
+            readonly on_floor: components["schemas"]["FollowedView"];
+            /** P95 Error Deg */
+            readonly p95_error_deg: number;
+            /** Rms Error Deg */
+            readonly rms_error_deg: {
+                readonly [key: string]: number;
+            };
+            /** Rms Torque Nm */
+            readonly rms_torque_nm: {
+                readonly [key: string]: number;
+            };
+            /** Saturated */
+            readonly saturated: {
+                readonly [key: string]: number;
+            };
+            /** Touches */
+            readonly touches: {
+                readonly [key: string]: number;
+            };
+            readonly touching: components["schemas"]["SpreadView"];
+            readonly unclamped: components["schemas"]["SpreadView"];
+        };
+        /**
+         * FollowedView
+         * @description Errors of a body that follows a movement; see `docs/avatar.md`.
+         *
+         *     `saturated`: axis -> share of the frames in which its motor is at its torque limit.
+         */
+        readonly FollowedView: {
+            /** Clipped Share */
+            readonly clipped_share: number;
+            /** Frames */
+            readonly frames: number;
+            readonly free: components["schemas"]["SpreadView"];
+            /** Mean Error Deg */
+            readonly mean_error_deg: number;
+            /** P95 Error Deg */
+            readonly p95_error_deg: number;
+            /** Saturated */
+            readonly saturated: {
+                readonly [key: string]: number;
+            };
+            /** Touches */
+            readonly touches: {
+                readonly [key: string]: number;
+            };
+            readonly touching: components["schemas"]["SpreadView"];
+            readonly unclamped: components["schemas"]["SpreadView"];
+        };
+        /**
          * FormPreview
          * @description One form of the previewed file, as it would be stored.
          */
@@ -5257,16 +6155,40 @@ export interface components {
             readonly motors: string;
         };
         /**
+         * GainChangeView
+         * @description A gain that differs from before, by its key in a configuration file.
+         */
+        readonly GainChangeView: {
+            /** Axis */
+            readonly axis: string;
+            /**
+             * Field
+             * @enum {string}
+             */
+            readonly field: "kp_nm_per_rad" | "kd_nm_s_per_rad";
+            /** New */
+            readonly new: number;
+            /** Old */
+            readonly old: number;
+        };
+        /**
          * GlanceView
          * @description The results of one limb in brief, each null if it could not be tested.
          *
-         *     `differ`: whether the latencies differ at all. `first`: the first latency that differs from the
-         *     smallest one, empty if none does. `trend`: of the trend along latency, one-sided where a
-         *     direction was predicted. `way`: the direction of the trend.
+         *     `factor`: what was compared. `differ`: whether the latencies, or bodies, differ at all. `first`:
+         *     the first latency that differs from the smallest one, or the pairs of bodies that differ (of two
+         *     bodies, their p); empty if none does. `trend`: of the trend along latency, one-sided where a
+         *     direction was predicted; bodies have none. `way`: the direction of the trend.
          */
         readonly GlanceView: {
             /** Differ */
             readonly differ: string | null;
+            /**
+             * Factor
+             * @default latency
+             * @enum {string}
+             */
+            readonly factor: "latency" | "body";
             /** First */
             readonly first: string | null;
             /** Limb */
@@ -5275,6 +6197,26 @@ export interface components {
             readonly trend: string | null;
             /** Way */
             readonly way: ("rises" | "falls") | null;
+        };
+        /**
+         * GoalFigures
+         * @description How one goal of the body was known during the test.
+         *
+         *     `tracked`, `inferred`, `lost`: shares of the time, which add up to 1. `longest_loss_s`: the
+         *     longest time without a break in which the goal was lost. `pose_rate_hz`: how often per second
+         *     the pose changed; 0 for a goal that never moved.
+         */
+        readonly GoalFigures: {
+            /** Inferred */
+            readonly inferred: number;
+            /** Longest Loss S */
+            readonly longest_loss_s: number;
+            /** Lost */
+            readonly lost: number;
+            /** Pose Rate Hz */
+            readonly pose_rate_hz: number;
+            /** Tracked */
+            readonly tracked: number;
         };
         /**
          * GoalsView
@@ -5287,6 +6229,21 @@ export interface components {
             readonly states: {
                 readonly [key: string]: "tracked" | "inferred" | "lost";
             };
+        };
+        /**
+         * GroupDifference
+         * @description The body parts of a group that differ, and in how many values; for the largest groups only.
+         *
+         *     Every part is in one of the groups: trunk, head, and of either side arm, fingers, leg. `parts`
+         *     is empty if the group differs only in how it gives way when it is pushed.
+         */
+        readonly GroupDifference: {
+            /** Group */
+            readonly group: string;
+            /** Parts */
+            readonly parts: readonly string[];
+            /** Values */
+            readonly values: number;
         };
         /**
          * HalfMadeView
@@ -5404,7 +6361,9 @@ export interface components {
          *     studies call it, null until it is given. `stature_m` is its own; an avatar has that of its
          *     participant. `bones_by`: whether bones were identified by VRM's map or by their names. Counts
          *     are of body parts that the model has, and of those with a convex piece; those of triangles,
-         *     vertices and textures are null if an earlier release measured the body.
+         *     vertices and textures are null if an earlier release measured the body. `attention`: the checks
+         *     that ask for attention before somebody wears it; `reach_off_m`: how far its hand is from that of
+         *     a participant who reaches straight ahead, for a stature of 1.7 m.
          */
         readonly HumanoidListed: {
             /**
@@ -5412,6 +6371,8 @@ export interface components {
              * Format: date-time
              */
             readonly at: string;
+            /** Attention */
+            readonly attention: readonly ("parts" | "fingers" | "rest_pose" | "proportions" | "reach" | "triangles" | "hulls" | "licence" | "wearing")[];
             /**
              * Bones By
              * @enum {string}
@@ -5437,6 +6398,8 @@ export interface components {
             readonly parts: number;
             /** Pieces */
             readonly pieces: number;
+            /** Reach Off M */
+            readonly reach_off_m: number | null;
             /** Right Fingers */
             readonly right_fingers: number;
             /** Size Bytes */
@@ -5481,6 +6444,8 @@ export interface components {
              * Format: date-time
              */
             readonly at: string;
+            /** Attention */
+            readonly attention: readonly ("parts" | "fingers" | "rest_pose" | "proportions" | "reach" | "triangles" | "hulls" | "licence" | "wearing")[];
             /**
              * Bones By
              * @enum {string}
@@ -5516,6 +6481,8 @@ export interface components {
             readonly pieces: number;
             /** Present */
             readonly present: readonly string[];
+            /** Reach Off M */
+            readonly reach_off_m: number | null;
             /** Right Fingers */
             readonly right_fingers: number;
             /** Segments M */
@@ -5881,6 +6848,31 @@ export interface components {
             readonly response_s: number;
         };
         /**
+         * JointFile
+         * @description The one joint of a body part in the single template.
+         *
+         *     `low_deg`, `high_deg`, `drive`: those of the primary axis. `limits_deg`: the name of each other
+         *     axis -> its symmetric limit. `shared_drive`: the drive of the other axes, if there are any.
+         */
+        readonly JointFile: {
+            readonly drive: components["schemas"]["DriveFile"];
+            /**
+             * High Deg
+             * @description degrees from the T-pose
+             */
+            readonly high_deg: number;
+            /** Limits Deg */
+            readonly limits_deg: {
+                readonly [key: string]: number;
+            };
+            /**
+             * Low Deg
+             * @description degrees from the T-pose
+             */
+            readonly low_deg: number;
+            readonly shared_drive?: components["schemas"]["DriveFile"] | null;
+        };
+        /**
          * JointMapView
          * @description A skeleton's joint map: its joint for each body joint, in every capture with this skeleton.
          *
@@ -5942,6 +6934,30 @@ export interface components {
             readonly version: number;
         };
         /**
+         * JointView
+         * @description A joint of the single template with the name of its primary axis.
+         */
+        readonly JointView: {
+            readonly drive: components["schemas"]["DriveFile"];
+            /**
+             * High Deg
+             * @description degrees from the T-pose
+             */
+            readonly high_deg: number;
+            /** Limits Deg */
+            readonly limits_deg: {
+                readonly [key: string]: number;
+            };
+            /**
+             * Low Deg
+             * @description degrees from the T-pose
+             */
+            readonly low_deg: number;
+            /** Primary Axis */
+            readonly primary_axis: string;
+            readonly shared_drive?: components["schemas"]["DriveFile"] | null;
+        };
+        /**
          * LanguageChoice
          * @description A request to switch to another language.
          */
@@ -5954,7 +6970,9 @@ export interface components {
          * @description The achieved latency of one phase with its 95 % interval.
          *
          *     It is null if it could not be determined; `reason` then says why. `off`: it deviates by more
-         *     than 10 ms and more than one frame.
+         *     than 10 ms and more than one frame. `headset_added_ms`: what the headset's own computing added,
+         *     as it reported itself, and how much of that it took off the set latency
+         *     (`headset_compensated_ms`), which it cannot at 0 ms; null if it reported nothing.
          */
         readonly LatencyReceipt: {
             /** Achieved Latency High Ms */
@@ -5963,6 +6981,10 @@ export interface components {
             readonly achieved_latency_low_ms: number | null;
             /** Achieved Latency Ms */
             readonly achieved_latency_ms: number | null;
+            /** Headset Added Ms */
+            readonly headset_added_ms?: number | null;
+            /** Headset Compensated Ms */
+            readonly headset_compensated_ms?: number | null;
             /** Kind */
             readonly kind: string;
             /** Latency Ms */
@@ -6021,6 +7043,20 @@ export interface components {
             readonly started: boolean;
             /** When Full */
             readonly when_full: string;
+        };
+        /**
+         * LeftOutColumn
+         * @description A column that would not be imported, and how many of its cells have a value.
+         *
+         *     `reason`: why it is not offered as an item, if it looks like one; absent otherwise.
+         */
+        readonly LeftOutColumn: {
+            /** Filled */
+            readonly filled: number;
+            /** Name */
+            readonly name: string;
+            /** Reason */
+            readonly reason?: string | null;
         };
         /**
          * LeftOutFigures
@@ -6101,6 +7137,98 @@ export interface components {
             readonly wearers: "author" | "licensed" | "everyone" | "unknown";
         };
         /**
+         * LimbWish
+         * @description On which limb a tracker is worn; null for none. `source` is the name of its source.
+         */
+        readonly LimbWish: {
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** Limb */
+            readonly limb: string | null;
+            /** Source */
+            readonly source: string;
+            /** Tracker */
+            readonly tracker: string;
+        };
+        /**
+         * LiveView
+         * @description All doors and sources. `turned_away`: packets of new senders, of which there were too many.
+         *
+         *     `interfaces` are this machine's addresses, `limbs` the body's joints, in its order.
+         */
+        readonly LiveView: {
+            /** Doors */
+            readonly doors: readonly components["schemas"]["DoorView"][];
+            /** Interfaces */
+            readonly interfaces: readonly string[];
+            /** Limbs */
+            readonly limbs: readonly string[];
+            /** Sources */
+            readonly sources: readonly components["schemas"]["SourceView"][];
+            /** Turned Away */
+            readonly turned_away: number;
+        };
+        /**
+         * Load
+         * @description Load a saved version of an avatar, by default its newest one, or a configuration given here.
+         *
+         *     With `targets` only those groups take what is asked for from it, as when an arm is reset to the
+         *     shipped settings (`standard`); without them the whole configuration is replaced.
+         */
+        readonly Load: {
+            readonly configuration?: components["schemas"]["AvatarFile"] | null;
+            /** Key */
+            readonly key?: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "load";
+            /** Targets */
+            readonly targets?: readonly string[] | null;
+            /** Version */
+            readonly version?: number | null;
+            /**
+             * What
+             * @default [
+             *       "gains",
+             *       "limits"
+             *     ]
+             */
+            readonly what: readonly ("gains" | "limits" | "colliders" | "casts" | "delays" | "compliance")[];
+        };
+        /**
+         * Lock
+         * @description Put a body group or part into a cast, at the angles of `held_deg`, or else the T-pose's.
+         */
+        readonly Lock: {
+            /**
+             * Group
+             * @description a body group or part, as in left_arm
+             */
+            readonly group: string;
+            /** Held Deg */
+            readonly held_deg?: {
+                readonly [key: string]: number;
+            };
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "lock";
+        };
+        /**
+         * LookedInstrument
+         * @description The key of the instrument that was made from an offer.
+         */
+        readonly LookedInstrument: {
+            /** Instrument */
+            readonly instrument: string;
+        };
+        /**
          * LookRequest
          * @description A file to preview.
          */
@@ -6117,7 +7245,9 @@ export interface components {
          * @description The preview of a file, and a proposed mapping.
          *
          *     `remembered`: the proposal is the mapping of an earlier import. `proposal` is None if no column
-         *     was identified for the participants or for any item.
+         *     was identified for the participants or for any item. `offer`: an instrument for columns that
+         *     look like answers and that the proposal does not read. `left_out`: all other columns that it
+         *     does not read.
          */
         readonly LookView: {
             /** Columns */
@@ -6130,6 +7260,9 @@ export interface components {
             readonly header_rows: number;
             /** Instrument */
             readonly instrument: string;
+            /** Left Out */
+            readonly left_out: readonly components["schemas"]["LeftOutColumn"][];
+            readonly offer: components["schemas"]["OfferedInstrument"] | null;
             readonly proposal: components["schemas"]["Mapping"] | null;
             /** Remembered */
             readonly remembered: boolean;
@@ -6140,6 +7273,17 @@ export interface components {
             readonly separator: string;
             /** Words */
             readonly words: readonly string[];
+        };
+        /**
+         * LossView
+         * @description A value that a conversion cannot keep; `operation`: its position, from 0.
+         */
+        readonly LossView: {
+            readonly change: components["schemas"]["ValueChangeView"];
+            /** Operation */
+            readonly operation: number;
+            /** Reason */
+            readonly reason: string;
         };
         /**
          * Mapping
@@ -6228,6 +7372,37 @@ export interface components {
             readonly unit: string;
         };
         /**
+         * Mirror
+         * @description Copy one side of the body to the other, or exchange both sides with `swap`.
+         */
+        readonly Mirror: {
+            /**
+             * Direction
+             * @enum {string}
+             */
+            readonly direction: "left_to_right" | "right_to_left" | "swap";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "mirror";
+            /**
+             * Targets
+             * @default [
+             *       "all"
+             *     ]
+             */
+            readonly targets: readonly string[];
+            /**
+             * What
+             * @default [
+             *       "gains",
+             *       "limits"
+             *     ]
+             */
+            readonly what: readonly ("gains" | "limits" | "colliders" | "casts" | "delays" | "compliance")[];
+        };
+        /**
          * ModelListed
          * @description A walking model in a list; `progress` while it is fitted, `trouble` if that failed.
          */
@@ -6267,6 +7442,9 @@ export interface components {
         /**
          * ModelSummary
          * @description The summary of a fitted model; `model_hash` is the hash in its file.
+         *
+         *     `predicted` is null for models fitted before it was computed, and empty for fewer than three
+         *     people.
          */
         readonly ModelSummary: {
             readonly census: components["schemas"]["CensusView"];
@@ -6286,6 +7464,8 @@ export interface components {
             readonly parameters: readonly components["schemas"]["ParameterView"][];
             /** People */
             readonly people: number;
+            /** Predicted */
+            readonly predicted?: readonly components["schemas"]["PredictedView"][] | null;
             readonly reading: components["schemas"]["ReadingView"];
             /** Readings */
             readonly readings: readonly components["schemas"]["ReadingScoreView"][];
@@ -6293,6 +7473,18 @@ export interface components {
             readonly static_vector: readonly number[];
             /** Walks */
             readonly walks: number;
+        };
+        /**
+         * ModelToTry
+         * @description A configuration that need not be stored, whose model is to be tried; with `box`, also that.
+         *
+         *     The body `box` of such a model has a free joint, and weighs nothing until its `gravcomp` is 0.
+         */
+        readonly ModelToTry: {
+            readonly box?: components["schemas"]["BoxToDrop"] | null;
+            readonly configuration: components["schemas"]["AvatarFile"];
+            /** Stature M */
+            readonly stature_m: number;
         };
         /**
          * ModelView
@@ -6354,6 +7546,18 @@ export interface components {
              * @enum {string}
              */
             readonly what: "started" | "paused" | "resumed" | "walk_back_started" | "walk_back_ended" | "time_up" | "ended" | "voided";
+        };
+        /**
+         * NamedAvatar
+         * @description The version of an avatar that a study names, and the name that people gave the avatar.
+         */
+        readonly NamedAvatar: {
+            /** Key */
+            readonly key: string;
+            /** Title */
+            readonly title: string;
+            /** Version */
+            readonly version: number;
         };
         /**
          * NetworkView
@@ -6565,6 +7769,31 @@ export interface components {
             readonly version?: number | null;
         };
         /**
+         * NewTuning
+         * @description A body to tune: a stored `avatar`, or a `configuration` as in its file; exactly one.
+         */
+        readonly NewTuning: {
+            readonly avatar?: components["schemas"]["AvatarNamed"] | null;
+            readonly configuration?: components["schemas"]["AvatarFile"] | null;
+            /**
+             * @default {
+             *       "heuristic": "critical",
+             *       "mirror": false,
+             *       "attempts": 3,
+             *       "accepted_overshoot_percent": 5,
+             *       "longest_s": 10,
+             *       "longest_wall_s": 20,
+             *       "relay_torques_nm": {}
+             *     }
+             */
+            readonly options: components["schemas"]["TuningChoice"];
+            /**
+             * Stature M
+             * @default 1.75
+             */
+            readonly stature_m: number;
+        };
+        /**
          * NewWalkSet
          * @description A set of walks to synthesise or to cut from captures; tables of tracks are uploaded.
          */
@@ -6592,6 +7821,39 @@ export interface components {
             readonly text: string;
         };
         /**
+         * Notice
+         * @description One finding.
+         *
+         *     Attributes:
+         *         rule: the rule that is broken.
+         *         action: `mended` if the result was corrected, `refused` if there is none, `noted` if the
+         *             result is as captured and its user has to judge.
+         *         what: what was found and what was done, a sentence.
+         *         value: the measured value, with its unit.
+         *         valid: the values that are expected.
+         *         remedy: what the user can do, a sentence.
+         */
+        readonly Notice: {
+            /**
+             * Action
+             * @enum {string}
+             */
+            readonly action: "mended" | "refused" | "noted";
+            /** Remedy */
+            readonly remedy: string;
+            /**
+             * Rule
+             * @enum {string}
+             */
+            readonly rule: "mirrored" | "pelvis" | "sides" | "length" | "toes" | "step_height" | "unit";
+            /** Valid */
+            readonly valid: string;
+            /** Value */
+            readonly value: string;
+            /** What */
+            readonly what: string;
+        };
+        /**
          * ObstacleView
          * @description An obstacle: a convex outline, in metres.
          */
@@ -6600,6 +7862,81 @@ export interface components {
             readonly corners_m: readonly (readonly number[])[];
             /** Name */
             readonly name: string;
+        };
+        /**
+         * OfferedInstrument
+         * @description An instrument of the lab's own for columns of no known one; a person checks and edits it.
+         *
+         *     `guessed_minimum`, `guessed_maximum`: the end of the scale that was guessed from the answers;
+         *     None once a person has confirmed it. An end that differs from its guess was set by a person.
+         *     `seen`: the answers in the file. `doubts`: what speaks against the guess. `labels`: the words of
+         *     the scale, from lowest to highest, if the answers are words.
+         */
+        readonly OfferedInstrument: {
+            /**
+             * Doubts
+             * @default []
+             */
+            readonly doubts: readonly string[];
+            /** Guessed Maximum */
+            readonly guessed_maximum?: number | null;
+            /** Guessed Minimum */
+            readonly guessed_minimum?: number | null;
+            /** Items */
+            readonly items: readonly components["schemas"]["OfferedItem"][];
+            /** Key */
+            readonly key: string;
+            /**
+             * Labels
+             * @default []
+             */
+            readonly labels: readonly string[];
+            /** Maximum */
+            readonly maximum: number;
+            /** Minimum */
+            readonly minimum: number;
+            /**
+             * Seen
+             * @default
+             */
+            readonly seen: string;
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * OfferedItem
+         * @description An item of an offered instrument: the column it was made from, and its words.
+         */
+        readonly OfferedItem: {
+            /** Column */
+            readonly column: string;
+            /** Key */
+            readonly key: string;
+            /** Text */
+            readonly text: string;
+        };
+        /**
+         * OperationProblemView
+         * @description Why an operation cannot be made.
+         *
+         *     `operation`: its position, from 0; null for the configuration before or after all operations.
+         */
+        readonly OperationProblemView: {
+            /** Message */
+            readonly message: string;
+            /** Operation */
+            readonly operation: number | null;
+            /** Path */
+            readonly path: string;
+            /**
+             * Remedy
+             * @default
+             */
+            readonly remedy: string;
+            /** Valid */
+            readonly valid?: unknown;
+            /** Value */
+            readonly value?: unknown;
         };
         /**
          * Override
@@ -6617,7 +7954,7 @@ export interface components {
              * Found
              * @enum {string}
              */
-            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
             /** Reason */
             readonly reason: string;
         };
@@ -6633,6 +7970,21 @@ export interface components {
             readonly check: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "feet" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
             /** Reason */
             readonly reason: string;
+        };
+        /**
+         * PageFigures
+         * @description The page itself: its memory at the end in bytes, null if the browser does not tell.
+         *
+         *     `errors`: errors that the page caught during the test, one line each, the first ten.
+         */
+        readonly PageFigures: {
+            /**
+             * Errors
+             * @default []
+             */
+            readonly errors: readonly string[];
+            /** Memory Bytes */
+            readonly memory_bytes?: number | null;
         };
         /**
          * PairedView
@@ -6698,22 +8050,26 @@ export interface components {
         /**
          * PairView
          * @description The comparison of two conditions.
+         *
+         *     `degenerate`: why the test says nothing about them; it then has no figures.
          */
         readonly PairView: {
             /** A */
             readonly a: string;
             /** B */
             readonly b: string;
+            /** Degenerate */
+            readonly degenerate: string | null;
             /** N */
             readonly n: number;
             /** P */
-            readonly p: number;
+            readonly p: number | null;
             /** P Holm */
-            readonly p_holm: number;
+            readonly p_holm: number | null;
             /** Rank Biserial */
-            readonly rank_biserial: number;
+            readonly rank_biserial: number | null;
             /** W */
-            readonly w: number;
+            readonly w: number | null;
         };
         /**
          * PaperConsent
@@ -6869,7 +8225,8 @@ export interface components {
          * @description A phase that has been prepared, with what has happened in it so far.
          *
          *     `side_contacts` counts how many times a side turned red; `side_contact_s` is the total duration,
-         *     in seconds of active time.
+         *     in seconds of active time. Both, and `completions`, are null for blinded readers until the phase
+         *     has ended: the moment at which they rise reveals the latency.
          *
          *     The achieved latency is measured once the phase has ended; `movement_s` is null until then. It
          *     has a 95 % interval; if it cannot be determined, it is null and `latency_reason` says why.
@@ -6890,7 +8247,7 @@ export interface components {
             /** Body */
             readonly body: string | null;
             /** Completions */
-            readonly completions: number;
+            readonly completions: number | null;
             /** Ended At */
             readonly ended_at: string | null;
             /**
@@ -6911,9 +8268,9 @@ export interface components {
             /** Phase Id */
             readonly phase_id: number;
             /** Side Contact S */
-            readonly side_contact_s: number;
+            readonly side_contact_s: number | null;
             /** Side Contacts */
-            readonly side_contacts: number;
+            readonly side_contacts: number | null;
             /** Started At */
             readonly started_at: string | null;
             /**
@@ -6923,6 +8280,39 @@ export interface components {
             readonly status: "preparing" | "running" | "paused" | "walk_back" | "freezing" | "done" | "voided";
             /** Step Index */
             readonly step_index: number;
+        };
+        /**
+         * PhysicsFigures
+         * @description How fast the body was computed: the model of a session, in the place where a session runs it.
+         *
+         *     `model_hash` and `stature_m`: as received from the server. `where`: in a worker or in the page.
+         *     `simulated_s`: simulated time. `real_time_factor`: simulated time divided by the time that its
+         *     computing took, so 1 is the least with which a body can keep up. `frame_*_s`: percentiles of
+         *     the computing time of one frame, inverse kinematics included. `resets`: how often the body was
+         *     put back because its simulation had become invalid.
+         */
+        readonly PhysicsFigures: {
+            /** Frame P50 S */
+            readonly frame_p50_s: number;
+            /** Frame P95 S */
+            readonly frame_p95_s: number;
+            /** Frame P99 S */
+            readonly frame_p99_s: number;
+            /** Model Hash */
+            readonly model_hash: string;
+            /** Real Time Factor */
+            readonly real_time_factor: number;
+            /** Resets */
+            readonly resets: number;
+            /** Simulated S */
+            readonly simulated_s: number;
+            /** Stature M */
+            readonly stature_m: number;
+            /**
+             * Where
+             * @enum {string}
+             */
+            readonly where: "worker" | "page";
         };
         /**
          * PieceView
@@ -6979,6 +8369,37 @@ export interface components {
             readonly name: string;
         };
         /**
+         * PredictedView
+         * @description How well travel times of people who were left out are predicted, by one method.
+         *
+         *     `method`: mixed, the model of this product, or a baseline that learnt from the same walks:
+         *     constant speed, line, log-log. `crps_less_s`: by how much the error of mixed is smaller, and
+         *     the 95 % interval of that over people; its ends are null if `no_interval` says why there is
+         *     none, as in `walk evaluate`. Coverages are shares: .5 and .9 if intervals are right.
+         */
+        readonly PredictedView: {
+            /** Coverage 50 */
+            readonly coverage_50: number;
+            /** Coverage 90 */
+            readonly coverage_90: number;
+            /** Crps Less S */
+            readonly crps_less_s: readonly [
+                number,
+                number | null,
+                number | null
+            ];
+            /** Crps S */
+            readonly crps_s: number;
+            /** Method */
+            readonly method: string;
+            /** No Interval */
+            readonly no_interval?: string | null;
+            /** People */
+            readonly people: number;
+            /** Walks */
+            readonly walks: number;
+        };
+        /**
          * PredictionAsked
          * @description A path for which durations are predicted.
          *
@@ -7018,8 +8439,10 @@ export interface components {
         };
         /**
          * PredictionView
-         * @description The distribution of durations on a path by P_prob, with P_stat and P_adapt for comparison.
+         * @description The distribution of durations on a path, with P_stat and P_adapt for comparison.
          *
+         *     `model`: mixed, the travel times with effects of people; prob, the paper's P_prob, for models
+         *     fitted before there was mixed.
          *     `assumed`: dependencies that were not given. `outside`: those beyond the walks that the model
          *     was fitted to, where it extrapolates. `lost`: draws that did not arrive and were drawn again.
          *     `durations_s` are sorted. `kinds`: includes synthetic if the model's people include synthetic
@@ -7043,6 +8466,11 @@ export interface components {
             readonly lost: number;
             /** Mean S */
             readonly mean_s: number;
+            /**
+             * Model
+             * @enum {string}
+             */
+            readonly model: "mixed" | "prob";
             /** Outside */
             readonly outside: readonly string[];
             /** Points M */
@@ -7416,6 +8844,96 @@ export interface components {
             readonly wish_id: string;
         };
         /**
+         * RelayCurveView
+         * @description The course of a relay experiment, from rest; the torque is the relay's.
+         */
+        readonly RelayCurveView: {
+            /** Angle Deg */
+            readonly angle_deg: readonly number[];
+            /** Hysteresis Deg */
+            readonly hysteresis_deg: number;
+            /** Time S */
+            readonly time_s: readonly number[];
+            /** Torque Nm */
+            readonly torque_nm: readonly number[];
+        };
+        /**
+         * RelayView
+         * @description A relay experiment: its torque and where that comes from, and the oscillation measured.
+         */
+        readonly RelayView: {
+            /** Amplitude Deg */
+            readonly amplitude_deg: number;
+            /** Hysteresis Deg */
+            readonly hysteresis_deg: number;
+            /** Inertia Kg M2 */
+            readonly inertia_kg_m2: number;
+            /** Period S */
+            readonly period_s: number;
+            /**
+             * Pose
+             * @enum {string}
+             */
+            readonly pose: "straight" | "bent";
+            /** Simulated S */
+            readonly simulated_s: number;
+            /**
+             * Torque From
+             * @enum {string}
+             */
+            readonly torque_from: "ramp" | "chosen";
+            /** Torque Nm */
+            readonly torque_nm: number;
+            /** Ultimate Gain Nm Rad */
+            readonly ultimate_gain_nm_rad: number;
+        };
+        /**
+         * RemoveParts
+         * @description Leave out body parts that a model lacks, such as a finger.
+         */
+        readonly RemoveParts: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "remove_parts";
+            /** Targets */
+            readonly targets: readonly string[];
+        };
+        /**
+         * RenderingFigures
+         * @description How regularly frames were shown, with the room, the mirror and the body drawn.
+         *
+         *     `mode`: in the headset, or in a window on the screen. `nominal_rate_hz`: the rate that the
+         *     device says it runs at, null if it does not tell. `frames`: frames of the render loop in the
+         *     test. `mean_rate_hz`: frames per second, waiting included. `interval_*_s`: percentiles of the
+         *     time from one frame to the next. `late_frames`: frames that came more than 1.5 nominal
+         *     intervals after their predecessor; null if the nominal rate is not known.
+         */
+        readonly RenderingFigures: {
+            /** Frames */
+            readonly frames: number;
+            /** Interval Longest S */
+            readonly interval_longest_s: number;
+            /** Interval P50 S */
+            readonly interval_p50_s: number;
+            /** Interval P95 S */
+            readonly interval_p95_s: number;
+            /** Interval P99 S */
+            readonly interval_p99_s: number;
+            /** Late Frames */
+            readonly late_frames?: number | null;
+            /** Mean Rate Hz */
+            readonly mean_rate_hz: number;
+            /**
+             * Mode
+             * @enum {string}
+             */
+            readonly mode: "immersive" | "screen";
+            /** Nominal Rate Hz */
+            readonly nominal_rate_hz?: number | null;
+        };
+        /**
          * Replay
          * @description One phase; a `participant` view has no latency, contacts, completions and scene.
          *
@@ -7635,6 +9153,16 @@ export interface components {
             readonly reason: string;
         };
         /**
+         * RunningTest
+         * @description A self-test that a session's headset makes now.
+         *
+         *     `left_s`: how long it still measures, about; null until it has begun.
+         */
+        readonly RunningTest: {
+            /** Left S */
+            readonly left_s: number | null;
+        };
+        /**
          * SampledWalk
          * @description One drawn walk; `xy_m` from 0 in steps of `step_s`, the last point at arrival.
          */
@@ -7783,6 +9311,72 @@ export interface components {
             readonly minimum: number | null;
             /** Value */
             readonly value: number | null;
+        };
+        /**
+         * SelfTestReport
+         * @description The report of a headset's self-test.
+         *
+         *     `id`: 32 hexadecimal digits that the headset chooses at the test's start, so that a report that
+         *     is sent again is not stored twice. `started_at`: UTC by the headset's clock. `duration_s`: what
+         *     was measured, less than the planned 120 s if somebody stopped the test. `tracking`: all six
+         *     goals. `physics`, `storage`: null if they could not be measured, which `page.errors` explains.
+         */
+        readonly SelfTestReport: {
+            readonly device: components["schemas"]["TestedDevice"];
+            /** Duration S */
+            readonly duration_s: number;
+            /** Id */
+            readonly id: string;
+            /**
+             * @default {
+             *       "errors": []
+             *     }
+             */
+            readonly page: components["schemas"]["PageFigures"];
+            readonly physics?: components["schemas"]["PhysicsFigures"] | null;
+            readonly rendering: components["schemas"]["RenderingFigures"];
+            /**
+             * Started At
+             * Format: date-time
+             */
+            readonly started_at: string;
+            readonly storage?: components["schemas"]["StorageFigures"] | null;
+            /** Tracking */
+            readonly tracking: {
+                readonly [key: string]: components["schemas"]["GoalFigures"];
+            };
+        };
+        /**
+         * SelfTestView
+         * @description A stored self-test with its verdicts.
+         *
+         *     `status`: the worst of the verdicts. `worn`: shown in a headset and moved by a person, so that
+         *     it says something about this device; a test on a screen or by a script says that the page works.
+         *     `received_at`: by the server's clock, which may be long after the test if the server was away.
+         *     `clock_ahead_s`: how far the headset's clock is ahead at least, because a report cannot arrive
+         *     before its test has ended; null up to a minute. A clock that is behind cannot be told from a
+         *     report that waited.
+         */
+        readonly SelfTestView: {
+            /** Clock Ahead S */
+            readonly clock_ahead_s: number | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Received At
+             * Format: date-time
+             */
+            readonly received_at: string;
+            readonly report: components["schemas"]["SelfTestReport"];
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "ok" | "warn" | "fail";
+            /** Verdicts */
+            readonly verdicts: readonly components["schemas"]["Verdict"][];
+            /** Worn */
+            readonly worn: boolean;
         };
         /**
          * SequenceRow
@@ -7947,9 +9541,12 @@ export interface components {
          * SessionView
          * @description Everything the cockpit shows of a session.
          *
-         *     `sequence` and latencies are null if the reader is `blinded`. `alarms`: the open alarms, oldest
+         *     `sequence` and latencies are null if the reader is `blinded`. `avatar_configuration_hash`
+         *     identifies the content of the physics avatar, `avatar_version` where it is found; both are null
+         *     for an avatar without physics. `alarms`: the open alarms, oldest
          *     first. `avatar_changes`: null until the running avatar is changed. `goals`: null unless the
-         *     headset's program reports them. `calibration`: null before the first calibration or order.
+         *     headset's program reports them. `calibration`: null before the first calibration begins or is
+         *     ordered.
          */
         readonly SessionView: {
             /** Alarms */
@@ -7961,6 +9558,7 @@ export interface components {
             readonly avatar_changes?: components["schemas"]["AvatarChangesView"] | null;
             /** Avatar Configuration Hash */
             readonly avatar_configuration_hash: string | null;
+            readonly avatar_version: components["schemas"]["NamedAvatar"] | null;
             /** Blinded */
             readonly blinded: boolean;
             /** Bodies */
@@ -8024,6 +9622,257 @@ export interface components {
             readonly version: number;
         };
         /**
+         * SetAxes
+         * @description Complete settings of single axes, such as those of an accepted tuning.
+         */
+        readonly SetAxes: {
+            /** Axes */
+            readonly axes: {
+                readonly [key: string]: components["schemas"]["AxisFile"];
+            };
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_axes";
+        };
+        /**
+         * SetBody
+         * @description Settings of the whole body: gravity, collisions, how the hips move, kind of targets.
+         */
+        readonly SetBody: {
+            /** Gravity */
+            readonly gravity?: boolean | null;
+            /** Hips */
+            readonly hips?: ("carried" | "welded") | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_body";
+            /** Self Collision */
+            readonly self_collision?: boolean | null;
+            /** Target Space */
+            readonly target_space?: ("local" | "world") | null;
+        };
+        /**
+         * SetColliders
+         * @description The kind of collider of groups or parts; `all` sets that of the whole body.
+         */
+        readonly SetColliders: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "simple" | "mesh" | "none";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_colliders";
+            /** Targets */
+            readonly targets: readonly string[];
+        };
+        /**
+         * SetCompliance
+         * @description How groups give way when they are pushed; what is null stays as it is.
+         *
+         *     `all` is every group that can be compliant, and `trunk_head` two of them. `limb_targets` are of
+         *     arms and legs: `world` can only be given to these, `joint` to any group.
+         */
+        readonly SetCompliance: {
+            /** Limb Targets */
+            readonly limb_targets?: ("joint" | "world") | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_compliance";
+            /**
+             * Stiffness Percent
+             * @description %
+             */
+            readonly stiffness_percent?: number | null;
+            /** Targets */
+            readonly targets: readonly string[];
+        };
+        /**
+         * SetDelays
+         * @description The time by which body parts lag, in addition to the latency of the condition.
+         */
+        readonly SetDelays: {
+            /**
+             * Delay Ms
+             * @description ms
+             */
+            readonly delay_ms: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_delays";
+            /** Targets */
+            readonly targets: readonly string[];
+        };
+        /**
+         * SetGains
+         * @description Gains and greatest torque of axes: values, or factors of the present values.
+         */
+        readonly SetGains: {
+            /**
+             * Kd Factor
+             * @description times the present value
+             */
+            readonly kd_factor?: number | null;
+            /** Kd Nm S Per Rad */
+            readonly kd_nm_s_per_rad?: number | null;
+            /**
+             * Kp Factor
+             * @description times the present value
+             */
+            readonly kp_factor?: number | null;
+            /** Kp Nm Per Rad */
+            readonly kp_nm_per_rad?: number | null;
+            /**
+             * Max Torque Factor
+             * @description times the present value
+             */
+            readonly max_torque_factor?: number | null;
+            /** Max Torque Nm */
+            readonly max_torque_nm?: number | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_gains";
+            /** Targets */
+            readonly targets: readonly string[];
+        };
+        /**
+         * SetJoints
+         * @description Load joints of the single template.
+         *
+         *     `edit` changes only what differs, as an edit of the single template does; `split` makes the axes
+         *     anew, each symmetric limit L as [-L, L].
+         */
+        readonly SetJoints: {
+            /** Joints */
+            readonly joints: {
+                readonly [key: string]: components["schemas"]["JointFile"];
+            };
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_joints";
+            /**
+             * Rule
+             * @default split
+             * @enum {string}
+             */
+            readonly rule: "edit" | "split";
+        };
+        /**
+         * SetLayers
+         * @description Whether the parts of two collision layers collide with each other.
+         */
+        readonly SetLayers: {
+            /** Collide */
+            readonly collide: boolean;
+            /** Layers */
+            readonly layers: readonly [
+                string,
+                string
+            ];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_layers";
+        };
+        /**
+         * SetLimits
+         * @description Lower and upper limit of axes; equal limits lock an axis.
+         */
+        readonly SetLimits: {
+            /**
+             * High Deg
+             * @description degrees from the T-pose
+             */
+            readonly high_deg?: number | null;
+            /**
+             * Low Deg
+             * @description degrees from the T-pose
+             */
+            readonly low_deg?: number | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_limits";
+            /** Targets */
+            readonly targets: readonly string[];
+        };
+        /**
+         * SetMasses
+         * @description The mass of the body, and how it is distributed.
+         *
+         *     `population` supplies the relative masses. `percent`: body part -> its share of the mass; null
+         *     gives a part the population's again. `distribution`: `population` takes all given shares back,
+         *     `equal` gives all 52 parts the same mass.
+         */
+        readonly SetMasses: {
+            /** Distribution */
+            readonly distribution?: ("population" | "equal") | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_masses";
+            /** Percent */
+            readonly percent?: {
+                readonly [key: string]: number | null;
+            };
+            /** Population */
+            readonly population?: ("male" | "female" | "average") | null;
+            /**
+             * Total Mass Kg
+             * @description kg
+             */
+            readonly total_mass_kg?: number | null;
+        };
+        /**
+         * SetModel
+         * @description The humanoid model whose body is worn, by its hash; null for a body of person's measures.
+         */
+        readonly SetModel: {
+            /** Humanoid */
+            readonly humanoid: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_model";
+        };
+        /**
+         * SetMotion
+         * @description How axes may turn: `locked`, `limited` as in a human body, or `free` over the full circle.
+         */
+        readonly SetMotion: {
+            /**
+             * Motion
+             * @enum {string}
+             */
+            readonly motion: "locked" | "limited" | "free";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "set_motion";
+            /** Targets */
+            readonly targets: readonly string[];
+        };
+        /**
          * Shift
          * @description A conversion, multiply * x + add, by which the numbers x of the file would fit the scale.
          */
@@ -8077,6 +9926,7 @@ export interface components {
          *     `parents` are indices into `joints`, -1 for the root. `unfitted` are joints that the markers do
          *     not show; `residual_m` is the distance of the fitted skeleton from the recording (root mean
          *     square), null for a skeleton of the file; `notes` say what was trimmed, bridged or left out.
+         *     `notices` are empty for captures that were inspected before bodies were checked by anatomy.
          */
         readonly SkeletonView: {
             /** Fingerprint */
@@ -8085,6 +9935,11 @@ export interface components {
             readonly joints: readonly string[];
             /** Notes */
             readonly notes: readonly string[];
+            /**
+             * Notices
+             * @default []
+             */
+            readonly notices: readonly components["schemas"]["Notice"][];
             /**
              * Origin
              * @enum {string}
@@ -8170,6 +10025,64 @@ export interface components {
             readonly state: "free" | "open" | "completed";
         };
         /**
+         * SourceView
+         * @description A sender at a door. `same_name`: another one that is not silent has the same name.
+         *
+         *     `offset_s` maps the source's clock to the server's monotonic clock, with `uncertainty_ms`; both
+         *     are null if the source sends no time, and the uncertainty for the first seconds. `doubled`,
+         *     `late` and `skipped` packets are null if it sends neither time nor counter. `problems` counts by
+         *     kind what could not be used.
+         */
+        readonly SourceView: {
+            /** Address */
+            readonly address: string;
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** Doubled */
+            readonly doubled: number | null;
+            /** Is Silent */
+            readonly is_silent: boolean;
+            /** Late */
+            readonly late: number | null;
+            /** Name */
+            readonly name: string;
+            /** Offset S */
+            readonly offset_s: number | null;
+            /** Packets */
+            readonly packets: number;
+            /** Problems */
+            readonly problems: {
+                readonly [key: string]: number;
+            };
+            /** Restarts */
+            readonly restarts: number;
+            /** Same Name */
+            readonly same_name: boolean;
+            /** Silent S */
+            readonly silent_s: number;
+            /** Skipped */
+            readonly skipped: number | null;
+            /** Trackers */
+            readonly trackers: readonly components["schemas"]["TrackerView"][];
+            /** Uncertainty Ms */
+            readonly uncertainty_ms: number | null;
+        };
+        /**
+         * SpreadView
+         * @description Mean and 95th percentile of absolute errors in degrees; null without samples.
+         */
+        readonly SpreadView: {
+            /** Mean Error Deg */
+            readonly mean_error_deg: number | null;
+            /** P95 Error Deg */
+            readonly p95_error_deg: number | null;
+            /** Samples */
+            readonly samples: number;
+        };
+        /**
          * StatementForm
          * @description A statement of a consent that can be ticked, in the participant's language.
          */
@@ -8223,12 +10136,46 @@ export interface components {
             readonly simulated: boolean;
         };
         /**
+         * StepCurveView
+         * @description The course of a step response on the whole body, and of the motor's torque.
+         *
+         *     `saturated_share`: the share of the time in which the motor is at its torque limit.
+         */
+        readonly StepCurveView: {
+            /** Angle Deg */
+            readonly angle_deg: readonly number[];
+            /** Saturated Share */
+            readonly saturated_share: number;
+            /** Target Deg */
+            readonly target_deg: number;
+            /** Time S */
+            readonly time_s: readonly number[];
+            /** Torque Nm */
+            readonly torque_nm: readonly number[];
+        };
+        /**
          * StepRead
          * @description A request to complete a step whose text was read inside the headset.
          */
         readonly StepRead: {
             /** Step Index */
             readonly step_index: number;
+        };
+        /**
+         * StepResponseView
+         * @description The figures of a step response on the whole body; a time is null if it was not reached.
+         */
+        readonly StepResponseView: {
+            /** Overshoot Percent */
+            readonly overshoot_percent: number;
+            /** Rise S */
+            readonly rise_s: number | null;
+            /** Settling S */
+            readonly settling_s: number | null;
+            /** Steady Error Deg */
+            readonly steady_error_deg: number;
+            /** Step Deg */
+            readonly step_deg: number;
         };
         /**
          * StepView
@@ -8281,6 +10228,39 @@ export interface components {
             readonly title: string;
             /** Until Completions */
             readonly until_completions?: number | null;
+        };
+        /**
+         * StorageFigures
+         * @description How telemetry of a session's size was sent and acknowledged, over the test's own socket.
+         *
+         *     `batches` and `bytes`: what was sent. `acknowledged`: batches that the server said are on disk.
+         *     `round_trip_*_s`: from the sending of a batch to its acknowledgement, over the acknowledged
+         *     ones; null if none was. `bytes_per_s`: sent, over the time of sending. `journal_writes`: how
+         *     often the headset wrote to its own journal, and `journal_write_p95_s` how long a write took;
+         *     null if there was none.
+         */
+        readonly StorageFigures: {
+            /** Acknowledged */
+            readonly acknowledged: number;
+            /** Batches */
+            readonly batches: number;
+            /** Bytes */
+            readonly bytes: number;
+            /** Bytes Per S */
+            readonly bytes_per_s: number;
+            /** Journal Write P95 S */
+            readonly journal_write_p95_s?: number | null;
+            /**
+             * Journal Writes
+             * @default 0
+             */
+            readonly journal_writes: number;
+            /** Round Trip Longest S */
+            readonly round_trip_longest_s?: number | null;
+            /** Round Trip P50 S */
+            readonly round_trip_p50_s?: number | null;
+            /** Round Trip P95 S */
+            readonly round_trip_p95_s?: number | null;
         };
         /**
          * StorageView
@@ -8409,6 +10389,8 @@ export interface components {
          *     they count as missing. `flagged`: frames with values that no summary uses. `backwards`: readable
          *     frames that are not later than the previous one, or whose time is not a number. `sha256` covers
          *     every bit of every readable frame in order of seq, so two copies of a record can be compared.
+         *     Of the avatar's streams, both it and `flagged` are null for readers who must not know the
+         *     condition (`blinded`).
          */
         readonly StreamReceipt: {
             /** Backwards */
@@ -8418,7 +10400,7 @@ export interface components {
             /** Epoch */
             readonly epoch: number;
             /** Flagged */
-            readonly flagged: number;
+            readonly flagged: number | null;
             /** Gaps */
             readonly gaps: readonly (readonly [
                 number,
@@ -8429,7 +10411,7 @@ export interface components {
             /** Sent */
             readonly sent: number;
             /** Sha256 */
-            readonly sha256: string;
+            readonly sha256: string | null;
             /** Stored */
             readonly stored: number;
             /** Stream */
@@ -8438,12 +10420,15 @@ export interface components {
         /**
          * StreamView
          * @description The amount of one stream that is on disk, for one epoch of the headset.
+         *
+         *     `frames_flagged`: how many have values that no summary uses; null for blinded readers, except of
+         *     the participant's own movement.
          */
         readonly StreamView: {
             /** Epoch */
             readonly epoch: number;
             /** Frames Flagged */
-            readonly frames_flagged: number;
+            readonly frames_flagged: number | null;
             /** Frames Stored */
             readonly frames_stored: number;
             /** Next Seq */
@@ -8770,6 +10755,25 @@ export interface components {
             readonly yaml: string;
         };
         /**
+         * TestedDevice
+         * @description The device as its browser describes it.
+         *
+         *     `name`: what people call it, such as "Quest 3", null if the browser does not tell. `inputs`:
+         *     every source that moved the body during the test. `scripted` and `desktop` say that nobody wore
+         *     the headset, and `screen` rendering that nothing was shown in it.
+         */
+        readonly TestedDevice: {
+            /**
+             * Inputs
+             * @default []
+             */
+            readonly inputs: readonly ("controllers" | "hands" | "body" | "shins" | "trackers" | "desktop" | "scripted")[];
+            /** Name */
+            readonly name?: string | null;
+            /** User Agent */
+            readonly user_agent: string;
+        };
+        /**
          * TimelineRequest
          * @description A dry run of one participant: by slot of the ledger, or by the index of the order.
          */
@@ -8904,6 +10908,45 @@ export interface components {
             readonly up_cm: number;
         };
         /**
+         * TrackerView
+         * @description A tracker or bone of a source; the figures are null until enough samples have arrived.
+         *
+         *     `rate_hz` is over the last two seconds. `gaps` are intervals of more than three times the usual
+         *     one; `jitter_ms`: 95 % of the other last intervals differ from the usual one by this at most.
+         *     `tracked` is false if the source says that it lost the tracker.
+         */
+        readonly TrackerView: {
+            /** Gaps */
+            readonly gaps: number;
+            /** Jitter Ms */
+            readonly jitter_ms: number | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "tracker" | "rigid_body" | "bone" | "root" | "headset" | "controller";
+            /** Limb */
+            readonly limb: string | null;
+            /** Longest Gap Ms */
+            readonly longest_gap_ms: number;
+            /** Name */
+            readonly name: string;
+            /** Position M */
+            readonly position_m: readonly [
+                number,
+                number,
+                number
+            ] | null;
+            /** Rate Hz */
+            readonly rate_hz: number | null;
+            /** Samples */
+            readonly samples: number;
+            /** Silent S */
+            readonly silent_s: number;
+            /** Tracked */
+            readonly tracked: boolean;
+        };
+        /**
          * TracksOrigin
          * @description Walks cut from an uploaded table of tracks.
          */
@@ -9003,12 +11046,313 @@ export interface components {
             readonly scores: readonly components["schemas"]["ScoreStep"][];
         };
         /**
+         * TunedAxis
+         * @description One axis of a tuning.
+         *
+         *     `status`: `waiting`, `measured` and `tested` while it is tuned; then `tuned`, `retried` with a
+         *     weaker relay, `flagged` with its `reason`, `locked`, or `kept` if it was not chosen. `kp` and
+         *     `kd` (N m/rad, N m s/rad) are null until it is ready. `warning`: what a torque chosen by hand
+         *     makes far worse than the ramp's.
+         */
+        readonly TunedAxis: {
+            /**
+             * Attempts
+             * @default 0
+             */
+            readonly attempts: number;
+            /** Kd */
+            readonly kd?: number | null;
+            /** Kd Before */
+            readonly kd_before: number;
+            /** Kp */
+            readonly kp?: number | null;
+            /** Kp Before */
+            readonly kp_before: number;
+            /** Mirrored From */
+            readonly mirrored_from?: string | null;
+            /** Name */
+            readonly name: string;
+            /**
+             * Note
+             * @default
+             */
+            readonly note: string;
+            /**
+             * Reason
+             * @default
+             */
+            readonly reason: string;
+            readonly relay?: components["schemas"]["RelayView"] | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "waiting" | "measured" | "tested" | "tuned" | "retried" | "flagged" | "locked" | "kept";
+            readonly step?: components["schemas"]["StepResponseView"] | null;
+            /**
+             * Warning
+             * @default
+             */
+            readonly warning: string;
+        };
+        /**
+         * TuningChoice
+         * @description The options of a tuning, as for `reembody tune`; it uses no random numbers, so no seed.
+         *
+         *     `axes`: those to tune, null for all that are free; with `mirror`, the left side is tuned and
+         *     copied to the right. `relay_torque_nm`: one for all axes, and `relay_torques_nm` by axis; a ramp
+         *     finds the others. An axis counts as not oscillating after `longest_s` of simulated time, or
+         *     `longest_wall_s` by the clock.
+         */
+        readonly TuningChoice: {
+            /**
+             * Accepted Overshoot Percent
+             * @default 5
+             */
+            readonly accepted_overshoot_percent: number;
+            /**
+             * Attempts
+             * @default 3
+             */
+            readonly attempts: number;
+            /** Axes */
+            readonly axes?: readonly string[] | null;
+            /**
+             * Heuristic
+             * @default critical
+             * @enum {string}
+             */
+            readonly heuristic: "critical" | "inertia" | "ziegler-nichols-pd" | "tyreus-luyben-pd";
+            /**
+             * Longest S
+             * @default 10
+             */
+            readonly longest_s: number;
+            /**
+             * Longest Wall S
+             * @default 20
+             */
+            readonly longest_wall_s: number;
+            /**
+             * Mirror
+             * @default false
+             */
+            readonly mirror: boolean;
+            /** Relay Torque Nm */
+            readonly relay_torque_nm?: number | null;
+            /**
+             * Relay Torques Nm
+             * @default {}
+             */
+            readonly relay_torques_nm: {
+                readonly [key: string]: number;
+            };
+        };
+        /**
+         * TuningListed
+         * @description A tuning in a list; `avatar` is null if an unsaved configuration was tuned.
+         *
+         *     `trouble`: why it failed, or what of it is damaged. `axes`: number of axes that are tuned; null
+         *     if the configuration was damaged in the database, so that it cannot be read.
+         */
+        readonly TuningListed: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            readonly avatar: components["schemas"]["AvatarNamed"] | null;
+            /** Axes */
+            readonly axes: number | null;
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Id */
+            readonly id: string;
+            readonly progress: components["schemas"]["TuningProgressView"] | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "tuning" | "stopped" | "ready" | "failed";
+            /** Stature M */
+            readonly stature_m: number;
+            /** Trouble */
+            readonly trouble: string | null;
+        };
+        /**
+         * TuningProgressView
+         * @description The progress: `done` of `total` axes in the attempt's phase, most recently `axis`.
+         *
+         *     `waiting`: it is queued behind another tuning, or its process is starting.
+         */
+        readonly TuningProgressView: {
+            /** Attempt */
+            readonly attempt: number;
+            /** Axis */
+            readonly axis: string;
+            /** Done */
+            readonly done: number;
+            /**
+             * Phase
+             * @enum {string}
+             */
+            readonly phase: "relay" | "steps";
+            /** Total */
+            readonly total: number;
+            /** Waiting */
+            readonly waiting: boolean;
+        };
+        /**
+         * TuningSaved
+         * @description Where to save the accepted gains: a new key with a title, or the next version of a key.
+         *
+         *     `based_on`: the version that was tuned, 0 for a new key; another version is refused, because its
+         *     own settings would be lost. At least one axis must be accepted.
+         */
+        readonly TuningSaved: {
+            /** Accepted */
+            readonly accepted: readonly string[];
+            /**
+             * Based On
+             * @default 0
+             */
+            readonly based_on: number;
+            /** Key */
+            readonly key: string;
+            /**
+             * Note
+             * @default
+             */
+            readonly note: string;
+            /** Title */
+            readonly title?: string | null;
+        };
+        /**
+         * TuningView
+         * @description A tuning in full: its options and every axis, while it is tuned and afterwards.
+         *
+         *     `report`: what is stored with a version of it; null until it is ready. `cpu_s`: its processor
+         *     time since it was last resumed.
+         */
+        readonly TuningView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            readonly avatar: components["schemas"]["AvatarNamed"] | null;
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Cpu S */
+            readonly cpu_s: number | null;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Id */
+            readonly id: string;
+            readonly options: components["schemas"]["TuningChoice"];
+            readonly progress: components["schemas"]["TuningProgressView"] | null;
+            /** Report */
+            readonly report: {
+                readonly [key: string]: unknown;
+            } | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "tuning" | "stopped" | "ready" | "failed";
+            /** Stature M */
+            readonly stature_m: number;
+            /** Trouble */
+            readonly trouble: string | null;
+            /** Tuned */
+            readonly tuned: readonly components["schemas"]["TunedAxis"][];
+        };
+        /**
          * UndoRequest
          * @description The reason for undoing an import.
          */
         readonly UndoRequest: {
             /** Reason */
             readonly reason: string;
+        };
+        /**
+         * Unlock
+         * @description Take the cast of a body group or part off; `all` takes every cast off.
+         */
+        readonly Unlock: {
+            /**
+             * Group
+             * @description a body group or part, as in left_arm
+             */
+            readonly group: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly operation: "unlock";
+        };
+        /**
+         * ValueChangeView
+         * @description A value that differs between two configurations.
+         *
+         *     `path`: its place in the file; `field`: its key, such as kp_nm_per_rad; `part` and `axis`:
+         *     what it belongs to, null for the whole body; `groups`: the body groups of the part but `all`.
+         *     `old` and `new` are null where a configuration does not have the value.
+         */
+        readonly ValueChangeView: {
+            /** Axis */
+            readonly axis: string | null;
+            /** Field */
+            readonly field: string;
+            /** Groups */
+            readonly groups: readonly string[];
+            /** New */
+            readonly new: unknown;
+            /** Old */
+            readonly old: unknown;
+            /** Part */
+            readonly part: string | null;
+            /** Path */
+            readonly path: string;
+            /** Unit */
+            readonly unit: string;
+        };
+        /**
+         * Verdict
+         * @description One figure of a report beside its limit.
+         *
+         *     `code`: what is judged, see docs/headset-page.md. `value` is null if it was not measured, and
+         *     `unit` is empty for a plain number. `limit`: the worst value that is still ok, or null if there
+         *     is no number to compare with; `at_least` says on which side of it the value has to be.
+         */
+        readonly Verdict: {
+            /** At Least */
+            readonly at_least: boolean;
+            /**
+             * Code
+             * @enum {string}
+             */
+            readonly code: "duration" | "rendering_rate" | "late_frames" | "longest_frame" | "physics_speed" | "physics_frame" | "physics_resets" | "head_loss" | "hands_loss" | "hands_tracked" | "feet_tracked" | "pose_rate" | "unacknowledged" | "round_trip" | "page_errors";
+            /** Limit */
+            readonly limit: number | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "ok" | "warn" | "fail";
+            /**
+             * Unit
+             * @enum {string}
+             */
+            readonly unit: "" | "s" | "Hz" | "%";
+            /** Value */
+            readonly value: number | null;
         };
         /**
          * VerificationView
@@ -9139,9 +11483,15 @@ export interface components {
          * @description The summary of a set of walks.
          *
          *     `cut_by_recording`: walks during which a recording begins or ends. `missing_dependencies`: those
-         *     that only some walks have, so that no model can depend on them.
+         *     that only some walks have, so that no model can depend on them. `assumed`: what a table did not
+         *     say and was assumed. `doubts`: why its unit or its rate is doubtful.
          */
         readonly WalksSummary: {
+            /**
+             * Assumed
+             * @default []
+             */
+            readonly assumed: readonly string[];
             readonly census: components["schemas"]["CensusView"];
             /** Cut By Recording */
             readonly cut_by_recording: number;
@@ -9149,6 +11499,11 @@ export interface components {
             readonly dependencies: {
                 readonly [key: string]: components["schemas"]["Range"];
             };
+            /**
+             * Doubts
+             * @default []
+             */
+            readonly doubts: readonly string[];
             readonly duration_s: components["schemas"]["Range"];
             /** Missing Dependencies */
             readonly missing_dependencies: readonly string[];
@@ -9398,6 +11753,417 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["AuditCheckView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_tunings_api_avatar_tunings_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["TuningListed"][];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_tuning_api_avatar_tunings_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewTuning"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TuningView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_tuning_api_avatar_tunings__tuning_id__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly tuning_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TuningView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_tuning_api_avatar_tunings__tuning_id__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly tuning_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_tuning_curves_api_avatar_tunings__tuning_id__axes__axis__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly axis: string;
+                readonly tuning_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AxisCurvesView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_tuning_comparison_api_avatar_tunings__tuning_id__comparison_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly tuning_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["ComparisonAsked"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ComparisonView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_tuning_configuration_api_avatar_tunings__tuning_id__configuration_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly tuning_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["AcceptedAxes"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AcceptedConfiguration"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly resume_tuning_api_avatar_tunings__tuning_id__resume_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly tuning_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TuningView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_tuning_saved_api_avatar_tunings__tuning_id__save_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly tuning_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["TuningSaved"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AvatarView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly stop_tuning_api_avatar_tunings__tuning_id__stop_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly tuning_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TuningView"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */
@@ -9668,6 +12434,48 @@ export interface operations {
             };
         };
     };
+    readonly get_avatar_difference_api_avatars__key__versions__number__difference__other__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly number: number;
+                readonly other: number;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AvatarVersionDifference"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly get_avatar_file_api_avatars__key__versions__number__file_get: {
         readonly parameters: {
             readonly query?: never;
@@ -9738,6 +12546,90 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["AvatarCheck"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_avatar_edit_api_avatars_edit_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["AvatarEdit"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AvatarEdited"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_avatar_model_api_avatars_model_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["ModelToTry"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The model as MJCF; its ETag is the SHA-256 of its bytes. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/xml": string;
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */
@@ -10437,6 +13329,47 @@ export interface operations {
             };
         };
     };
+    readonly get_generated_verification_api_captures_generated_verification_get: {
+        readonly parameters: {
+            readonly query: {
+                readonly avatars: readonly string[];
+                readonly lock_feet?: boolean;
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["VerificationView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly post_destroyed_api_copies__copy_id__destroyed_post: {
         readonly parameters: {
             readonly query?: never;
@@ -10662,6 +13595,44 @@ export interface operations {
                 };
                 content: {
                     readonly "application/zip": unknown;
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_headset_tests_api_headset_tests_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["SelfTestView"][];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */
@@ -12069,7 +15040,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "text/event-stream": components["schemas"]["ErrorBody"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
             /** @description Successful Response */
@@ -12087,7 +15058,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "text/event-stream": components["schemas"]["ErrorBody"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -13424,6 +16395,50 @@ export interface operations {
             };
         };
     };
+    readonly post_offered_instrument_api_studies__key__imports_instrument_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["OfferedInstrument"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["LookedInstrument"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly post_look_api_studies__key__imports_look_post: {
         readonly parameters: {
             readonly query?: never;
@@ -14496,7 +17511,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "text/event-stream": components["schemas"]["ErrorBody"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
             /** @description Successful Response */
@@ -14514,7 +17529,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "text/event-stream": components["schemas"]["ErrorBody"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -14746,6 +17761,130 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": readonly components["schemas"]["TemplateView"][];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_trackers_api_trackers_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["LiveView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly put_door_api_trackers_doors__door__put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly door: "osc" | "natnet" | "json";
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["DoorWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["LiveView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly put_limb_api_trackers_limbs_put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["LimbWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["LiveView"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */
@@ -15064,6 +18203,86 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["HeadsetLanguage"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_self_test_api_vr_self_tests_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["SelfTestReport"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SelfTestView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_self_test_avatar_api_vr_self_tests_avatar_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SessionAvatar"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

@@ -16,6 +16,8 @@ export type StoredAnswers = Schemas["StoredAnswers"];
 export type SessionView = Schemas["SessionView"];
 export type Step = Schemas["StepView"];
 export type Current = Schemas["CurrentView"];
+/** What a session's record has and lacks, computed from the record. */
+export type SessionReceipt = Schemas["SessionReceipt"];
 export type PairedDevice = Schemas["DeviceView"];
 export type PhaseSummary = Schemas["PhaseView"];
 export type Note = Schemas["NoteView"];
@@ -149,10 +151,15 @@ export interface Telemetry {
   readonly fps: number | null;
   readonly completions?: number;
   readonly side_contacts?: number;
+  /** Of the contacts that have ended. */
+  readonly side_contact_s?: number;
   readonly joint_error_deg?: Readonly<Record<string, number | null>>;
 }
 
-/** How good the headset's data are; null if unknown. Counts start with the phase. */
+/**
+ * How good the headset's data are; null if unknown. Counts start with the phase. For blinded readers,
+ * only the participant's own frames are counted as flagged.
+ */
 export interface Signal {
   readonly frame_rate_hz: number | null;
   readonly usual_rate_hz: number | null;

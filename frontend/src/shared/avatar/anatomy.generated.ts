@@ -267,6 +267,46 @@ export const GROUPS: Readonly<Record<string, readonly string[]>> = {
   right_fingers: ["RightThumbProximal", "RightThumbIntermediate", "RightThumbDistal", "RightIndexProximal", "RightIndexIntermediate", "RightIndexDistal", "RightMiddleProximal", "RightMiddleIntermediate", "RightMiddleDistal", "RightRingProximal", "RightRingIntermediate", "RightRingDistal", "RightLittleProximal", "RightLittleIntermediate", "RightLittleDistal"],
 };
 
+/** The share of each segment in the body's mass, of one side where it has two. */
+export const MASS_SHARES = {
+  "male": {
+    "Head": 0.0694,
+    "Upper trunk 2": 0.1596,
+    "Middle trunk": 0.1633,
+    "Lower trunk": 0.1117,
+    "Upper arm": 0.0271,
+    "Forearm": 0.0162,
+    "Hand 2": 0.0061,
+    "Thigh": 0.1416,
+    "Shank": 0.0433,
+    "Foot": 0.0137
+  },
+  "female": {
+    "Head": 0.0668066806680668,
+    "Upper trunk 2": 0.1545154515451545,
+    "Middle trunk": 0.1465146514651465,
+    "Lower trunk": 0.12471247124712471,
+    "Upper arm": 0.0255025502550255,
+    "Forearm": 0.0138013801380138,
+    "Hand 2": 0.0056005600560056,
+    "Thigh": 0.1478147814781478,
+    "Shank": 0.0481048104810481,
+    "Foot": 0.0129012901290129
+  },
+  "average": {
+    "Head": 0.06810340517025851,
+    "Upper trunk 2": 0.15705785289264462,
+    "Middle trunk": 0.15490774538726934,
+    "Lower trunk": 0.11820591029551478,
+    "Upper arm": 0.026301315065753283,
+    "Forearm": 0.015000750037501875,
+    "Hand 2": 0.005850292514625732,
+    "Thigh": 0.14470723536176808,
+    "Shank": 0.04570228511425571,
+    "Foot": 0.013300665033251662
+  }
+} as const;
+
 /** The body of a person 1 m tall; every length grows with the stature. */
 export const UNIT_SKELETON = {
   "offsets": [

@@ -4,7 +4,7 @@
  * The server's `app/science/avatar/ik/bounded_step.py` explains the method; source: block principal
  * pivoting, Judice and Pires (1994), Computers & Operations Research 21(5), 587-596.
  */
-import { residual, solveInPlace } from "./linear";
+import { solveInPlace, writeResidual } from "./linear";
 
 const MAX_PASSES = 200;
 const SPARE_ATTEMPTS = 3;
@@ -13,82 +13,121 @@ const FREE = 0;
 const AT_LOW = -1;
 const AT_HIGH = 1;
 
+/** The best step of a problem that is solved only once. */
 export function boundedStep(
   hessian: Float64Array,
   pull: Float64Array,
   low: Float64Array,
   high: Float64Array,
 ): Float64Array {
-  const sides = new Int8Array(pull.length);
-  let step = solveFree(hessian, pull, sides, low, high);
-  let fewest = pull.length + 1;
-  let spare = SPARE_ATTEMPTS;
-  for (let pass = 0; pass < MAX_PASSES; pass++) {
-    const changes = violations(sides, residual(hessian, pull, step), step, low, high);
-    const last = changes.at(-1);
-    if (last === undefined) break;
-    let applied = changes;
-    if (changes.length < fewest) {
-      fewest = changes.length;
-      spare = SPARE_ATTEMPTS;
-    } else if (spare > 0) spare -= 1;
-    else applied = [last];
-    for (const [i, side] of applied) sides[i] = side;
-    step = solveFree(hessian, pull, sides, low, high);
-  }
-  return step.map((value, i) => Math.min(Math.max(value, low[i] as number), high[i] as number));
+  return new BoundedStep(pull.length).solve(hessian, pull, low, high);
 }
 
-/**
- * The unknowns that are on the wrong side, each with its new side: free ones that left their
- * bounds, and held ones that are pulled inwards.
- */
-function violations(
-  sides: Int8Array,
-  left: Float64Array,
-  step: Float64Array,
-  low: Float64Array,
-  high: Float64Array,
-): readonly (readonly [number, number])[] {
-  const found: [number, number][] = [];
-  for (let i = 0; i < sides.length; i++) {
-    const side = sides[i];
-    const drawn = left[i] as number;
-    const value = step[i] as number;
-    if (side === AT_LOW && drawn > TOLERANCE) found.push([i, FREE]);
-    else if (side === AT_HIGH && drawn < -TOLERANCE) found.push([i, FREE]);
-    else if (side === FREE && value < (low[i] as number) - TOLERANCE) found.push([i, AT_LOW]);
-    else if (side === FREE && value > (high[i] as number) + TOLERANCE) found.push([i, AT_HIGH]);
-  }
-  return found;
-}
+/** Solves problems of one size without allocating anything: it does so twice in every frame. */
+export class BoundedStep {
+  private readonly step: Float64Array;
+  private readonly left: Float64Array;
+  private readonly matrix: Float64Array;
+  private readonly right: Float64Array;
+  private readonly sides: Int8Array;
+  private readonly free: Int32Array;
+  /** Unknowns that are on the wrong side, each with its new one. */
+  private readonly wrong: Int32Array;
+  private readonly better: Int8Array;
 
-function solveFree(
-  hessian: Float64Array,
-  pull: Float64Array,
-  sides: Int8Array,
-  low: Float64Array,
-  high: Float64Array,
-): Float64Array {
-  const n = pull.length;
-  const step = new Float64Array(n);
-  const free: number[] = [];
-  for (let i = 0; i < n; i++) {
-    if (sides[i] === FREE) free.push(i);
-    else step[i] = (sides[i] === AT_LOW ? low[i] : high[i]) as number;
+  constructor(private readonly size: number) {
+    this.step = new Float64Array(size);
+    this.left = new Float64Array(size);
+    this.matrix = new Float64Array(size * size);
+    this.right = new Float64Array(size);
+    this.sides = new Int8Array(size);
+    this.free = new Int32Array(size);
+    this.wrong = new Int32Array(size);
+    this.better = new Int8Array(size);
   }
-  const rest = residual(hessian, pull, step);
-  const matrix = new Float64Array(free.length * free.length);
-  const right = new Float64Array(free.length);
-  free.forEach((row, i) => {
-    right[i] = rest[row] as number;
-    for (let j = 0; j <= i; j++) {
-      matrix[i * free.length + j] = hessian[row * n + (free[j] as number)] as number;
+
+  /** The best step; the array is used again by the next call. */
+  solve(
+    hessian: Float64Array,
+    pull: Float64Array,
+    low: Float64Array,
+    high: Float64Array,
+  ): Float64Array {
+    const { size, sides, step, left, wrong, better } = this;
+    sides.fill(FREE);
+    this.solveFree(hessian, pull, low, high);
+    let fewest = size + 1;
+    let spare = SPARE_ATTEMPTS;
+    for (let pass = 0; pass < MAX_PASSES; pass++) {
+      writeResidual(hessian, pull, step, left);
+      const changes = this.findWrong(low, high);
+      if (changes === 0) break;
+      let first = 0;
+      if (changes < fewest) {
+        fewest = changes;
+        spare = SPARE_ATTEMPTS;
+      } else if (spare > 0) spare -= 1;
+      else first = changes - 1;
+      for (let at = first; at < changes; at++) {
+        sides[wrong[at] as number] = better[at] as number;
+      }
+      this.solveFree(hessian, pull, low, high);
     }
-  });
-  solveInPlace(matrix, right);
-  free.forEach((row, i) => {
-    step[row] = right[i] as number;
-  });
-  return step;
+    for (let i = 0; i < size; i++) {
+      step[i] = Math.min(Math.max(step[i] as number, low[i] as number), high[i] as number);
+    }
+    return step;
+  }
+
+  /**
+   * Find the unknowns that are on the wrong side: free ones that left their bounds, and held ones
+   * that are pulled inwards. Returns how many there are.
+   */
+  private findWrong(low: Float64Array, high: Float64Array): number {
+    const { size, sides, step, left, wrong, better } = this;
+    let found = 0;
+    for (let i = 0; i < size; i++) {
+      const side = sides[i];
+      const drawn = left[i] as number;
+      const value = step[i] as number;
+      let next = side;
+      if (side === AT_LOW && drawn > TOLERANCE) next = FREE;
+      else if (side === AT_HIGH && drawn < -TOLERANCE) next = FREE;
+      else if (side === FREE && value < (low[i] as number) - TOLERANCE) next = AT_LOW;
+      else if (side === FREE && value > (high[i] as number) + TOLERANCE) next = AT_HIGH;
+      if (next === side) continue;
+      wrong[found] = i;
+      better[found] = next as number;
+      found++;
+    }
+    return found;
+  }
+
+  /** Solve for the free unknowns with the others at their bounds. */
+  private solveFree(
+    hessian: Float64Array,
+    pull: Float64Array,
+    low: Float64Array,
+    high: Float64Array,
+  ): void {
+    const { size, sides, step, left, matrix, right, free } = this;
+    let count = 0;
+    for (let i = 0; i < size; i++) {
+      if (sides[i] === FREE) {
+        free[count] = i;
+        step[i] = 0;
+        count++;
+      } else step[i] = (sides[i] === AT_LOW ? low[i] : high[i]) as number;
+    }
+    writeResidual(hessian, pull, step, left);
+    for (let i = 0; i < count; i++) {
+      const row = free[i] as number;
+      right[i] = left[row] as number;
+      for (let j = 0; j <= i; j++) {
+        matrix[i * count + j] = hessian[row * size + (free[j] as number)] as number;
+      }
+    }
+    solveInPlace(matrix, right, count);
+    for (let i = 0; i < count; i++) step[free[i] as number] = right[i] as number;
+  }
 }

@@ -37,10 +37,9 @@ export class IkError extends Error {
   override name = "IkError";
 }
 
-/** The goals in the order of the rows. */
-export function rowsOf(goals: Goals): readonly (Place | null)[] {
+/** Throws IkError for goals that cannot be used. */
+export function checkGoals(goals: Goals): void {
   for (const part of GOAL_PARTS) check(part, goals[part]);
-  return GOAL_PARTS.map((part) => goals[part]);
 }
 
 function check(part: string, goal: Place | null): void {
@@ -51,7 +50,8 @@ function check(part: string, goal: Place | null): void {
         " position is unknown.",
     );
   }
-  const norm = Math.hypot(...goal.rotation);
+  const [w, x, y, z] = goal.rotation;
+  const norm = Math.sqrt(w * w + x * x + y * y + z * z);
   if (!(Math.abs(norm - 1) <= UNIT_WITHIN)) {
     throw new IkError(
       `The rotation of ${part} is not a unit quaternion (w, x, y, z): its length is ${norm}, not 1.`,

@@ -6,22 +6,15 @@
  * check that both give the same angles for the same model and goals.
  */
 import type { MjModel } from "@mujoco/mujoco";
-import {
-  length,
-  minus,
-  normalised,
-  plus,
-  rotated,
-  rotationBetween,
-  type Vector,
-} from "../rotations";
-import { boundedStep } from "./boundedStep";
-import { Chain, vectorAt } from "./chain";
-import { type Goals, rowsOf } from "./goals";
+import { length, minus, normalised, rotated, rotationBetween, type Vector } from "../rotations";
+import { BoundedStep } from "./boundedStep";
+import { Chain } from "./chain";
+import { checkGoals, GOAL_PARTS, type Goals } from "./goals";
 import { estimatedHips, type Place } from "./hips";
-import { gram, transposedTimes } from "./linear";
+import { writeGram, writeTransposedTimes } from "./linear";
 import type { Mujoco } from "./mujoco";
 
+/** What was found for a frame; its arrays are used again for the next. */
 export interface Solution {
   /** The angle of every hinge, in the model's order; see `axisNames`. */
   readonly anglesRad: Float64Array;
@@ -58,15 +51,47 @@ const WEIGHTS: Weights = { position: 10, rotation: 1, rest: 0.1 };
 const CALM = 0.1;
 const DAMPING = 0.5;
 const ROOT_UNKNOWNS = 6;
-const ORIGIN: Place = { positionM: [0, 0, 0], rotation: [1, 0, 0, 0] };
 const FAR_M = 0.5;
 const FAR_RAD = Math.PI / 2;
+/** Rows of the goals: the hips' own is not solved for. */
+const HIPS = 0;
+const LINES = 6;
+const MOST_LINES = LINES * (GOAL_PARTS.length - 1);
 
-/** The weighted equations of one step. */
-interface System {
+/** The weighted equations of one step, in arrays that are made once. */
+class System {
+  readonly count: number;
   readonly jacobian: Float64Array;
-  readonly error: Float64Array;
+  readonly error = new Float64Array(MOST_LINES);
   readonly damping: Float64Array;
+  readonly hessian: Float64Array;
+  readonly right: Float64Array;
+  readonly rest: Float64Array;
+  readonly low: Float64Array;
+  readonly high: Float64Array;
+  readonly bounded: BoundedStep;
+
+  /** `extra`: six if the hips move, too, else none; their unknowns come first. */
+  constructor(
+    readonly extra: number,
+    hinges: number,
+  ) {
+    const count = extra + hinges;
+    this.count = count;
+    this.jacobian = new Float64Array(MOST_LINES * count);
+    this.damping = new Float64Array(count);
+    this.hessian = new Float64Array(count * count);
+    this.right = new Float64Array(count);
+    this.rest = new Float64Array(count);
+    this.low = new Float64Array(count).fill(-Infinity);
+    this.high = new Float64Array(count).fill(Infinity);
+    this.bounded = new BoundedStep(count);
+  }
+}
+
+interface MutablePlace {
+  positionM: Vector;
+  rotation: Place["rotation"];
 }
 
 /** Follows one tracked body frame by frame; `delete()` frees MuJoCo's memory. */
@@ -75,9 +100,16 @@ export class InverseKinematics {
   private readonly rest: Float64Array;
   private readonly weights: Weights;
   private readonly steps: number;
-  private angles: Float64Array;
-  private hips: Place = ORIGIN;
+  private readonly angles: Float64Array;
+  private readonly hips: MutablePlace = { positionM: [0, 0, 0], rotation: [1, 0, 0, 0] };
   private hasStarted = false;
+  private readonly withHips: System;
+  private readonly withoutHips: System;
+  private readonly solution: Solution;
+  /** The rows that have a goal in this frame, and how many they are. */
+  private readonly rows = new Int32Array(GOAL_PARTS.length);
+  private known = 0;
+  private readonly off = new Float64Array(LINES);
 
   constructor(mujoco: Mujoco, model: MjModel, options: IkOptions = {}) {
     const { restRad = REST_POSE_RAD, weights = WEIGHTS, steps = 2 } = options;
@@ -88,6 +120,15 @@ export class InverseKinematics {
       Math.min(Math.max(restRad[name] ?? 0, lowRad), highRad),
     );
     this.angles = Float64Array.from(this.rest);
+    const { length: moving } = this.chain.moving;
+    this.withHips = new System(ROOT_UNKNOWNS, moving);
+    this.withoutHips = new System(0, moving);
+    this.solution = {
+      anglesRad: this.angles,
+      hips: this.hips,
+      positionErrorsM: new Float64Array(GOAL_PARTS.length),
+      rotationErrorsRad: new Float64Array(GOAL_PARTS.length),
+    };
   }
 
   get axisNames(): readonly string[] {
@@ -96,29 +137,30 @@ export class InverseKinematics {
 
   /** Forget the previous frame: start from the rest pose, with the hips at the origin. */
   reset(): void {
-    this.angles = Float64Array.from(this.rest);
-    this.hips = ORIGIN;
+    this.angles.set(this.rest);
+    this.hips.positionM = [0, 0, 0];
+    this.hips.rotation = [1, 0, 0, 0];
     this.hasStarted = false;
   }
 
-  /** Solve for the pose of the next frame. */
+  /**
+   * Solve for the pose of the next frame; the solution is valid until the next call. It allocates a
+   * few vectors for the hips and nothing else, since it runs in every frame.
+   */
   solve(given: Goals): Solution {
-    const goals = rowsOf(given);
+    checkGoals(given);
     const estimate = this.setHips(given);
-    const rows = [...goals.keys()].filter((row) => row > 0 && goals[row] !== null);
-    for (let step = 0; step < (rows.length > 0 ? this.steps : 0); step++) {
-      this.step(goals, rows, estimate);
+    this.known = 0;
+    for (let row = HIPS + 1; row < GOAL_PARTS.length; row++) {
+      if (goalOf(given, row) !== null) this.rows[this.known++] = row;
+    }
+    const system = estimate === null ? this.withoutHips : this.withHips;
+    for (let step = 0; step < (this.known > 0 ? this.steps : 0); step++) {
+      this.step(given, estimate, system);
     }
     this.chain.place(this.hips.positionM, this.hips.rotation, this.angles);
-    const errors = goals.map((goal, row) => (goal === null ? null : this.error(row, goal)));
-    const sizes = (which: 0 | 1) =>
-      Float64Array.from(errors, (error) => (error === null ? Number.NaN : length(error[which])));
-    return {
-      anglesRad: Float64Array.from(this.angles),
-      hips: this.hips,
-      positionErrorsM: sizes(0),
-      rotationErrorsRad: sizes(1),
-    };
+    this.noteErrors(given);
+    return this.solution;
   }
 
   delete(): void {
@@ -131,14 +173,19 @@ export class InverseKinematics {
   private setHips(goals: Goals): Place | null {
     const { Hips: waist, Head: head, LeftLowerLeg: left, RightLowerLeg: right } = goals;
     if (waist !== null) {
-      this.hips = { positionM: waist.positionM, rotation: normalised(waist.rotation) };
+      const [x, y, z] = waist.positionM;
+      this.hips.positionM = [x, y, z];
+      this.hips.rotation = normalised(waist.rotation);
       this.hasStarted = true;
       return null;
     }
     if (head === null) return null;
     const shins = left !== null && right !== null ? ([left, right] as const) : null;
     const estimate = estimatedHips(this.chain.trunk, head, shins);
-    if (!this.hasStarted || this.isFarFrom(estimate)) this.hips = estimate;
+    if (!this.hasStarted || this.isFarFrom(estimate)) {
+      this.hips.positionM = estimate.positionM;
+      this.hips.rotation = estimate.rotation;
+    }
     this.hasStarted = true;
     return estimate;
   }
@@ -149,107 +196,99 @@ export class InverseKinematics {
     return length(minus(positionM, this.hips.positionM)) > FAR_M || length(turn) > FAR_RAD;
   }
 
-  private error(row: number, goal: Place): readonly [Vector, Vector] {
-    return [
-      minus(goal.positionM, this.chain.positionM(row)),
-      rotationBetween(this.chain.rotation(row), goal.rotation),
-    ];
+  private noteErrors(goals: Goals): void {
+    const { positionErrorsM, rotationErrorsRad } = this.solution;
+    const { off } = this;
+    for (let row = HIPS; row < GOAL_PARTS.length; row++) {
+      const goal = goalOf(goals, row);
+      if (goal !== null) this.chain.writeError(row, goal, off, 0);
+      positionErrorsM[row] = goal === null ? Number.NaN : lengthAt(off, 0);
+      rotationErrorsRad[row] = goal === null ? Number.NaN : lengthAt(off, 3);
+    }
   }
 
-  private step(
-    goals: readonly (Place | null)[],
-    rows: readonly number[],
-    estimate: Place | null,
-  ): void {
-    const { moving, moves, hinges } = this.chain;
+  private step(goals: Goals, estimate: Place | null, system: System): void {
+    const { moving, moves, lowsRad, highsRad } = this.chain;
+    const { count, extra, jacobian, error, damping, hessian, right, rest, low, high } = system;
     this.chain.place(this.hips.positionM, this.hips.rotation, this.angles);
-    this.chain.prepareJacobians();
-    const extra = estimate === null ? 0 : ROOT_UNKNOWNS;
-    const count = moving.length + extra;
-    const { jacobian, error, damping } = this.system(goals, rows, extra);
-    const rest = new Float64Array(count);
-    const low = new Float64Array(count).fill(-Infinity);
-    const high = new Float64Array(count).fill(Infinity);
+    this.write(goals, system);
     if (estimate !== null) {
       rest.set(minus(estimate.positionM, this.hips.positionM));
       rest.set(rotationBetween(this.hips.rotation, estimate.rotation), 3);
     }
-    moving.forEach((index, column) => {
+    for (let column = 0; column < moving.length; column++) {
+      const index = moving[column] as number;
       const angle = this.angles[index] as number;
-      const hinge = hinges[index];
-      const needed = rows.some((row) => moves[row]?.[column]);
-      rest[extra + column] = needed ? (this.rest[index] as number) - angle : 0;
-      low[extra + column] = (hinge?.lowRad ?? 0) - angle;
-      high[extra + column] = (hinge?.highRad ?? 0) - angle;
-    });
+      let isNeeded = false;
+      for (let at = 0; at < this.known; at++) {
+        isNeeded ||= moves[this.rows[at] as number]?.[column] === true;
+      }
+      rest[extra + column] = isNeeded ? (this.rest[index] as number) - angle : 0;
+      low[extra + column] = (lowsRad[index] as number) - angle;
+      high[extra + column] = (highsRad[index] as number) - angle;
+    }
     const pull = this.weights.rest ** 2;
-    const hessian = gram(jacobian, count);
-    const right = transposedTimes(jacobian, error, count);
+    const lines = LINES * this.known;
+    writeGram(jacobian, lines, count, hessian);
+    writeTransposedTimes(jacobian, error, lines, count, right);
     for (let i = 0; i < count; i++) {
       const diagonal = i * count + i;
       hessian[diagonal] = (hessian[diagonal] as number) + (pull + (damping[i] as number));
       right[i] = (right[i] as number) + pull * (rest[i] as number);
     }
-    this.apply(boundedStep(hessian, right, low, high), extra);
+    this.apply(system.bounded.solve(hessian, right, low, high), extra);
   }
 
   private apply(step: Float64Array, extra: number): void {
-    const { moving, hinges } = this.chain;
-    moving.forEach((index, column) => {
+    const { moving, lowsRad, highsRad } = this.chain;
+    for (let column = 0; column < moving.length; column++) {
+      const index = moving[column] as number;
       const angle = (this.angles[index] as number) + (step[extra + column] as number);
-      const { lowRad = 0, highRad = 0 } = hinges[index] ?? {};
-      this.angles[index] = Math.min(Math.max(angle, lowRad), highRad);
-    });
+      const low = lowsRad[index] as number;
+      const high = highsRad[index] as number;
+      this.angles[index] = Math.min(Math.max(angle, low), high);
+    }
     if (extra === 0) return;
-    const { positionM, rotation } = this.hips;
-    this.hips = {
-      positionM: plus(positionM, vectorAt(step, 0)),
-      rotation: rotated(rotation, vectorAt(step, 3)),
-    };
+    const [x, y, z] = this.hips.positionM;
+    const at = (i: number) => step[i] as number;
+    this.hips.positionM = [x + at(0), y + at(1), z + at(2)];
+    this.hips.rotation = rotated(this.hips.rotation, [at(3), at(4), at(5)]);
   }
 
-  private system(goals: readonly (Place | null)[], rows: readonly number[], extra: number): System {
-    const { moving, moves } = this.chain;
-    const count = extra + moving.length;
-    const jacobian = new Float64Array(6 * rows.length * count);
-    const error = new Float64Array(6 * rows.length);
-    const damping = new Float64Array(count).fill(CALM);
-    rows.forEach((row, index) => {
-      const start = 6 * index * count;
-      const [off, turn] = this.error(row, goals[row] as Place);
+  /** Write the weighted equations of all goals. */
+  private write(goals: Goals, { count, extra, jacobian, error, damping }: System): void {
+    const { moves } = this.chain;
+    jacobian.fill(0, 0, LINES * this.known * count);
+    damping.fill(CALM);
+    for (let index = 0; index < this.known; index++) {
+      const row = this.rows[index] as number;
+      const start = LINES * index * count;
+      this.chain.writeError(row, goalOf(goals, row) as Place, error, LINES * index);
       this.chain.writeJacobian(row, jacobian, start + extra, count);
-      if (extra > 0)
-        writeRigid(minus(this.chain.positionM(row), this.hips.positionM), jacobian, start, count);
+      if (extra > 0) this.chain.writeRigid(row, this.hips.positionM, jacobian, start, count);
       let squared = 0;
-      for (let line = 0; line < 6; line++) {
+      for (let line = 0; line < LINES; line++) {
         const weight = line < 3 ? this.weights.position : this.weights.rotation;
-        const weighted = weight * ((line < 3 ? off[line] : turn[line - 3]) as number);
-        error[6 * index + line] = weighted;
+        const weighted = weight * (error[LINES * index + line] as number);
+        error[LINES * index + line] = weighted;
         squared += weighted * weighted;
         for (let at = start + line * count; at < start + (line + 1) * count; at++) {
           jacobian[at] = (jacobian[at] as number) * weight;
         }
       }
       squared *= DAMPING;
+      const moved = moves[row];
       for (let i = 0; i < count; i++) {
-        if (i < extra || moves[row]?.[i - extra]) damping[i] = (damping[i] as number) + squared;
+        if (i < extra || moved?.[i - extra]) damping[i] = (damping[i] as number) + squared;
       }
-    });
-    return { jacobian, error, damping };
+    }
   }
 }
 
-/** Write how a point at `arm` from the hips moves with them. */
-function writeRigid(arm: Vector, into: Float64Array, start: number, width: number): void {
-  const [x, y, z] = arm;
-  const crossed = [
-    [0, z, -y],
-    [-z, 0, x],
-    [y, -x, 0],
-  ];
-  for (let row = 0; row < 3; row++) {
-    into[start + row * width + row] = 1;
-    into[start + (row + 3) * width + row + 3] = 1;
-    into.set(crossed[row] as number[], start + row * width + 3);
-  }
-}
+const goalOf = (goals: Goals, row: number): Place | null =>
+  goals[GOAL_PARTS[row] as (typeof GOAL_PARTS)[number]];
+
+const lengthAt = (values: Float64Array, at: number): number => {
+  const [x, y, z] = [values[at] as number, values[at + 1] as number, values[at + 2] as number];
+  return Math.sqrt(x * x + y * y + z * z);
+};

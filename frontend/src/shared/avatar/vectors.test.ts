@@ -53,7 +53,9 @@ afterAll(() => model.delete());
 describe("inverse kinematics in the browser's MuJoCo", () => {
   it.each(ik.cases)("gives the server's angles, frame after frame, $name", (vector) => {
     const solver = new InverseKinematics(mujoco, model);
-    const solved = ik.frames.map((_, index) => solver.solve(goalsOf(index, vector.waist)));
+    const solved = ik.frames.map((_, index) =>
+      structuredClone(solver.solve(goalsOf(index, vector.waist))),
+    );
     const columns = vector.axes.map((name) => solver.axisNames.indexOf(name));
     const anglesOf = (one: Solution) => columns.map((at) => one.anglesRad[at] ?? Number.NaN);
     expect(greatestDifference(solved.map(anglesOf), vector.angles_rad)).toBeLessThanOrEqual(ALIKE);
@@ -74,7 +76,9 @@ describe("inverse kinematics in the browser's MuJoCo", () => {
 
   it.each(ik.cases)("gives the server's goal errors, $name", (vector) => {
     const solver = new InverseKinematics(mujoco, model);
-    const solved = ik.frames.map((_, index) => solver.solve(goalsOf(index, vector.waist)));
+    const solved = ik.frames.map((_, index) =>
+      structuredClone(solver.solve(goalsOf(index, vector.waist))),
+    );
     const known = (values: Float64Array) => Array.from(values, (one) => (one >= 0 ? one : -1));
     const withoutNulls = (rows: IkCase["position_errors_m"]) =>
       rows.map((row) => row.map((x) => x ?? -1));

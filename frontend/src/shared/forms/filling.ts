@@ -53,7 +53,8 @@ export function answer(
   const { draft } = filling;
   const typed = kind === "text" || kind === "number";
   const { traces, turn } = answered(draft.traces, filling.turn, { item: key, typed }, nowMs);
-  const timings = { ...draft.timings, [key]: Math.round(sinceStartS * 10) / 10 };
+  // The wall clock of a device may be set back while a form is open; no answer comes before it.
+  const timings = { ...draft.timings, [key]: Math.max(0, Math.round(sinceStartS * 10) / 10) };
   const data = withAnswer(draft.data, key, value);
   return { ...filling, turn, draft: { ...draft, data, timings, traces } };
 }

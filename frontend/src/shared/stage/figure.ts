@@ -22,10 +22,17 @@ export interface Figure {
   /** Offset on the floor, metres. */
   readonly offset?: readonly [x: number, z: number];
   readonly roles?: BodyRoles;
+  /**
+   * The movement, in the joints of the body, of the one who sees through this figure's eyes; if it
+   * is left out or has no rotations, the eyes look where the figure faces.
+   */
+  readonly seenBy?: PointMotion;
   /** The point to highlight. */
   readonly highlighted?: number | null;
   /** The body to draw it with; without one it is drawn as a skeleton. */
   readonly worn?: Worn;
+  /** Words above the figure's head, and their height above the floor in metres. */
+  readonly label?: { readonly text: string; readonly heightM: number };
   /** Parts that are marked at a time, because their settings were changed. */
   readonly marks?: (time: Seconds) => BodyMarks;
 }

@@ -8,6 +8,7 @@ import {
   LineSegments,
   Sprite,
   SpriteMaterial,
+  Vector3,
 } from "three";
 import type { StagePalette } from "./figure";
 import type { FloorPlan } from "./floor";
@@ -25,7 +26,7 @@ export function makeFloor(plan: FloorPlan, palette: StagePalette): Group {
       const value = first + cell * plan.step;
       const text = `${tidy(value)} m`;
       const margin = 0.22 * plan.step;
-      const label = sprite(text, palette);
+      const label = label3d(text, palette);
       if (axis === 0) label.position.set(value, 0, plan.max[1] + margin);
       else label.position.set(plan.max[0] + 1.4 * margin, 0, value);
       floor.add(label);
@@ -40,11 +41,13 @@ export function disposeFloor(floor: Group): void {
       part.geometry.dispose();
       part.material.dispose();
     }
-    if (part instanceof Sprite) {
-      part.material.map?.dispose();
-      part.material.dispose();
-    }
+    if (part instanceof Sprite) disposeLabel(part);
   }
+}
+
+export function disposeLabel(label: Sprite): void {
+  label.material.map?.dispose();
+  label.material.dispose();
 }
 
 const tidy = (value: number): string => String(Number(value.toPrecision(6)) + 0).replace("-", "−");
@@ -68,17 +71,27 @@ function lines(plan: FloorPlan, part: number, colour: string, opacity: number): 
   );
 }
 
-function sprite(text: string, palette: StagePalette): Sprite {
+/** Size of a label relative to its distance from the camera. */
+const WIDTH = 0.078;
+const HEIGHT = 0.026;
+const NARROWEST_PX = 192;
+
+/** Words in the scene that face the camera; they are hidden where the picture's edge cuts them. */
+export function label3d(text: string, palette: StagePalette): Sprite {
   const canvas = document.createElement("canvas");
-  canvas.width = 192;
+  canvas.width = NARROWEST_PX;
   canvas.height = 64;
   const ink = canvas.getContext("2d");
   if (ink !== null) {
-    ink.font = `44px ${palette.font}`;
+    const font = `44px ${palette.font}`;
+    ink.font = font;
+    // As wide as the words; a new width forgets the font.
+    canvas.width = Math.max(NARROWEST_PX, Math.ceil(ink.measureText(text).width) + 8);
+    ink.font = font;
     ink.fillStyle = palette.ink;
     ink.textAlign = "center";
     ink.textBaseline = "middle";
-    ink.fillText(text, 96, 34);
+    ink.fillText(text, canvas.width / 2, 34);
   }
   const label = new Sprite(
     new SpriteMaterial({
@@ -89,6 +102,15 @@ function sprite(text: string, palette: StagePalette): Sprite {
       sizeAttenuation: false,
     }),
   );
-  label.scale.set(0.078, 0.026, 1);
+  const width = (WIDTH * canvas.width) / NARROWEST_PX;
+  label.scale.set(width, HEIGHT, 1);
+  const at = new Vector3();
+  label.onBeforeRender = (_renderer, _scene, camera) => {
+    const [across = 1, , , , , upwards = 1] = camera.projectionMatrix.elements;
+    at.setFromMatrixPosition(label.matrixWorld).project(camera);
+    const isWhole =
+      Math.abs(at.x) + (width / 2) * across < 1 && Math.abs(at.y) + (HEIGHT / 2) * upwards < 1;
+    label.material.opacity = isWhole ? 1 : 0;
+  };
   return label;
 }

@@ -2,7 +2,7 @@
  * Figures on a floor with a scale and a movable camera: the room is as large as what moves in it.
  * This module imports three.js: import it lazily.
  */
-import { Color, PerspectiveCamera, Vector3 } from "three";
+import { Color, PerspectiveCamera, type Sprite, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Seconds } from "../units";
 import {
@@ -15,6 +15,7 @@ import {
   type StagePalette,
 } from "./figure";
 import { type FloorPlan, floorPlan } from "./floor";
+import { disposeLabel, label3d } from "./floor3d";
 import { NO_MARKS } from "./marks";
 import { BodyMarks3d } from "./marks3d";
 import type { Placing } from "./placing";
@@ -40,6 +41,7 @@ export class Stage3d extends Space3d {
   #mode: CameraMode = "orbit";
   #time = 0 as Seconds;
   #followed: Vector3 | null = null;
+  #labels: readonly Sprite[] = [];
   #marks: readonly { readonly body: StageBody; readonly marks: BodyMarks3d }[] = [];
 
   /** Throws if the browser has no WebGL. */
@@ -65,6 +67,7 @@ export class Stage3d extends Space3d {
   ): void {
     this.standBodies(figures.map((figure) => bodyOf(figure, palette)));
     this.#standMarks();
+    this.#standLabels(figures, palette);
     this.standBlocks(blocks, palette);
     const plan = floorPlan([...figures, ...comparedFigures], blocks);
     const isElsewhere = JSON.stringify(plan) !== JSON.stringify(this.#plan);
@@ -86,7 +89,10 @@ export class Stage3d extends Space3d {
   show(time: Seconds): void {
     this.#time = time;
     const frames = this.bodies.map((body) => {
-      body.headless = this.#mode === "eyes";
+      const isInside = this.#mode === "eyes";
+      body.headless = isInside;
+      // The ghost of the one who sees would block the view.
+      body.group.visible = !(isInside && body.figure.tone === "ghost");
       return body.show(time);
     });
     for (const { body, marks } of this.#marks) {
@@ -96,6 +102,25 @@ export class Stage3d extends Space3d {
     this.#moveCamera();
     this.renderer.domElement.dataset.frame = String(frames[0] ?? 0);
     this.requestPicture();
+  }
+
+  #standLabels(figures: readonly Figure[], palette: StagePalette): void {
+    this.#clearLabels();
+    this.#labels = figures.flatMap(({ label, offset = [0, 0] }) => {
+      if (label === undefined) return [];
+      const words = label3d(label.text, palette);
+      words.position.set(offset[0], label.heightM, offset[1]);
+      return words;
+    });
+    for (const words of this.#labels) this.scene.add(words);
+  }
+
+  #clearLabels(): void {
+    for (const words of this.#labels) {
+      this.scene.remove(words);
+      disposeLabel(words);
+    }
+    this.#labels = [];
   }
 
   #standMarks(): void {
@@ -149,6 +174,16 @@ export class Stage3d extends Space3d {
     this.requestPicture();
   }
 
+  /** Look at a place from a distance, in metres, from the direction the camera has now. */
+  lookAt(middle: readonly [x: number, y: number, z: number], distanceM: number): void {
+    const { target } = this.#controls;
+    const away = this.camera.position.clone().sub(target).setLength(distanceM);
+    target.set(...middle);
+    this.camera.position.copy(target).add(away);
+    this.#controls.update();
+    this.requestPicture();
+  }
+
   /** The point nearest to a position on the stage, if one is close enough. */
   nearest(xPx: number, yPx: number): Pointed | null {
     const { clientWidth, clientHeight } = this.renderer.domElement;
@@ -162,6 +197,7 @@ export class Stage3d extends Space3d {
 
   override dispose(): void {
     for (const { marks } of this.#marks) marks.dispose();
+    this.#clearLabels();
     this.#controls.dispose();
     super.dispose();
   }
@@ -187,7 +223,8 @@ export class Stage3d extends Space3d {
       this.#controls.update();
       return;
     }
-    lookThroughEyes(this.camera, body.figure, placed, this.blocks?.middle ?? null);
+    const place = this.blocks?.middle ?? null;
+    lookThroughEyes(this.camera, body.figure, placed, { time: this.#time, place });
   }
 }
 

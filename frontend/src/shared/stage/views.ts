@@ -1,7 +1,10 @@
 /** Where the camera of a stage is placed, and how far away it must be. */
 import { type PerspectiveCamera, Vector3 } from "three";
+import type { Seconds } from "../units";
+import { sightAt } from "./eyes";
 import { type CameraSide, type Figure, facingOf } from "./figure";
 import type { FloorPlan } from "./floor";
+import { frameAt } from "./motion";
 
 /** The unit vector from the middle to the camera; `facing` is the direction the body faces. */
 export function directionOf(from: CameraSide, [x, z]: readonly [x: number, z: number]): Vector3 {
@@ -67,18 +70,26 @@ function cornersOf({ box, step }: FloorPlan): Vector3[] {
 const MIN_AHEAD = 0.55;
 
 /**
- * Look from a figure's eyes at a place, or ahead if it is null; do nothing if the body's parts are
- * unknown.
+ * Look through a figure's eyes: where its head looks, or where the head's rotation is unknown, at a
+ * place, or ahead if that is null. Do nothing if the body's parts are unknown.
  */
 export function lookThroughEyes(
   camera: PerspectiveCamera,
   figure: Figure,
   placed: Float32Array,
-  place: readonly [x: number, y: number, z: number] | null,
+  { time, place }: { readonly time: Seconds; readonly place: Place | null },
 ): void {
   const head = figure.roles?.head ?? null;
+  if (head === null) return;
+  const { seenBy } = figure;
+  const sight = seenBy === undefined ? null : sightAt(seenBy, frameAt(seenBy, time));
+  if (sight !== null) {
+    camera.position.set(...sight.fromM);
+    camera.lookAt(...sight.toM);
+    return;
+  }
   const facing = facingOf(figure, placed);
-  if (head === null || facing === null) return;
+  if (facing === null) return;
   const [x = 0, y = 0, z = 0] = placed.subarray(3 * head, 3 * head + 3);
   const [fx, fz] = facing;
   camera.position.set(x + 0.12 * fx, y + 0.08, z + 0.12 * fz);
@@ -89,3 +100,5 @@ export function lookThroughEyes(
   const more = Math.max(0, MIN_AHEAD * (y - py) - ahead);
   camera.lookAt(px + more * fx, py, pz + more * fz);
 }
+
+type Place = readonly [x: number, y: number, z: number];

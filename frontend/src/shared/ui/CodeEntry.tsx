@@ -1,5 +1,5 @@
 /** A pairing code, entered by large on-screen keys or a keyboard; the last character sends it. */
-import type { JSX } from "react";
+import { type JSX, useEffect, useRef } from "react";
 import { CODE_LENGTH, codeCharacters, writtenCode } from "../pairingCode";
 import classes from "./CodeEntry.module.css";
 import { Icon } from "./Icon";
@@ -22,6 +22,9 @@ export function CodeEntry(props: CodeEntryProps): JSX.Element {
     onCharacters(next);
     if (next.length === CODE_LENGTH && next !== characters) onCode(writtenCode(next));
   };
+  const field = useRef<HTMLInputElement>(null);
+  // A keyboard types the code without a click; no keys of the system come up (see inputMode).
+  useEffect(() => field.current?.focus(), []);
   return (
     <>
       <form
@@ -31,6 +34,7 @@ export function CodeEntry(props: CodeEntryProps): JSX.Element {
         }}
       >
         <input
+          ref={field}
           className={classes.code}
           aria-label={label}
           // The keys below are the keyboard; the system's own would cover half of the screen.

@@ -11,6 +11,7 @@ import { theme } from "../theme/theme";
 import "@mantine/core/styles.css";
 import "@mantine/notifications/styles.css";
 import "../theme/tokens.css";
+import "../theme/narrow.css";
 
 const queries = new QueryClient({
   defaultOptions: {

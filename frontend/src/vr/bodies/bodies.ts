@@ -7,8 +7,8 @@
  * possible, and recorded.
  */
 import type { Goals } from "@shared/avatar/goals";
+import type { Health } from "@shared/avatar/physics/simulation";
 import type { AvatarOrder } from "../telemetry/wire/fromServer";
-import type { Health } from "./physics/simulation";
 
 /** Root position x, y, z (m, world), then 22 local rotations w, x, y, z: as in the streams (91). */
 export type PoseValues = Float64Array;

@@ -1,6 +1,6 @@
 /**
- * The capsules of a body that is not simulated, and their distances from boxes: the server's
- * `skeleton/kinematics.py`, `simulation/finger_capsules.py` and `tasks/contacts.py`.
+ * The capsules of a body that is not simulated: the server's `skeleton/kinematics.py` and
+ * `simulation/finger_capsules.py`.
  */
 import {
   FINGER_PARTS,
@@ -8,7 +8,8 @@ import {
   JOINTS,
   UNIT_SKELETON,
 } from "@shared/avatar/anatomy.generated";
-import { multiplyRows } from "./physics/numbers";
+import { multiplyRows } from "@shared/avatar/physics/numbers";
+import { type SegmentsM, unitSkeleton } from "./armLengths";
 
 const JOINT_COUNT = JOINTS.length;
 const SEGMENTS_PER_FINGER = 3;
@@ -31,12 +32,13 @@ export class Capsules {
   private readonly fingerJoints: Float64Array;
   private readonly fingerEnds: Float64Array;
 
-  constructor(statureM: number, withFingers: boolean) {
+  constructor(statureM: number, withFingers: boolean, segmentsM?: SegmentsM) {
     const scaled = (values: readonly number[]) =>
       Float64Array.from(values, (one) => statureM * one);
-    this.offsets = scaled(UNIT_SKELETON.offsets);
+    const { offsets, capsuleEnds } = unitSkeleton(statureM, segmentsM);
+    this.offsets = scaled(offsets);
     this.starts = scaled(UNIT_SKELETON.capsuleStarts);
-    this.ends = scaled(UNIT_SKELETON.capsuleEnds);
+    this.ends = scaled(capsuleEnds);
     this.fingerJoints = scaled(UNIT_SKELETON.fingerJoints);
     this.fingerEnds = scaled(UNIT_SKELETON.fingerEnds);
     const radii = withFingers
@@ -121,62 +123,3 @@ function rotateRow(
   result[into + 1] = (origins[o + 1] as number) + (vy + w * cy + z * cx - x * cz);
   result[into + 2] = (origins[o + 2] as number) + (vz + w * cz + x * cy - y * cx);
 }
-
-const crossings = new Float64Array(8);
-
-/**
- * The distance between a segment, from `at` on in `axes`, and a box parallel to the world's axes,
- * as the server computes it (`segment_box_distance_m`): along the segment the squared distance is
- * convex and piecewise quadratic, and its pieces meet where the segment crosses a face's plane.
- */
-export function segmentBoxDistanceM(
-  axes: Float64Array,
-  at: number,
-  low: readonly number[],
-  high: readonly number[],
-): number {
-  crossings.fill(0);
-  crossings[7] = 1;
-  for (let i = 0; i < 3; i++) {
-    const start = axes[at + i] as number;
-    const along = (axes[at + 3 + i] as number) - start;
-    if (along === 0) continue;
-    crossings[1 + i] = Math.min(Math.max(((low[i] as number) - start) / along, 0), 1);
-    crossings[4 + i] = Math.min(Math.max(((high[i] as number) - start) / along, 0), 1);
-  }
-  let before = 0;
-  let after = 1;
-  let slopeBefore = Number.NEGATIVE_INFINITY;
-  let slopeAfter = Number.POSITIVE_INFINITY;
-  for (let k = 0; k < crossings.length; k++) {
-    const t = crossings[k] as number;
-    let slope = 0;
-    for (let i = 0; i < 3; i++) {
-      const start = axes[at + i] as number;
-      const along = (axes[at + 3 + i] as number) - start;
-      slope += outside(start + t * along, low[i] as number, high[i] as number) * along;
-    }
-    if (slope <= 0) {
-      before = Math.max(before, t);
-      slopeBefore = Math.max(slopeBefore, slope);
-    }
-    if (slope >= 0) {
-      after = Math.min(after, t);
-      slopeAfter = Math.min(slopeAfter, slope);
-    }
-  }
-  const isEnclosed =
-    Number.isFinite(slopeBefore) && Number.isFinite(slopeAfter) && slopeAfter > slopeBefore;
-  const share = isEnclosed ? -slopeBefore / (slopeAfter - slopeBefore) : 0;
-  const best = before + share * (after - before);
-  let squared = 0;
-  for (let i = 0; i < 3; i++) {
-    const start = axes[at + i] as number;
-    const point = start + best * ((axes[at + 3 + i] as number) - start);
-    squared += outside(point, low[i] as number, high[i] as number) ** 2;
-  }
-  return Math.sqrt(squared);
-}
-
-const outside = (value: number, low: number, high: number): number =>
-  value - Math.min(Math.max(value, low), high);

@@ -3,15 +3,16 @@
  * joint but the hips. The server's `app/rehearsal/avatars.DelayedCopy`.
  */
 import { FINGER_PARTS, JOINTS } from "@shared/avatar/anatomy.generated";
-import { Capsules, segmentBoxDistanceM } from "./capsules";
-import { DelayBuffer } from "./physics/delayBuffer";
-import { SimulationError } from "./physics/modelTable";
-import type { Health } from "./physics/simulation";
+import { DelayBuffer } from "@shared/avatar/physics/delayBuffer";
+import { SimulationError } from "@shared/avatar/physics/modelTable";
+import type { Health } from "@shared/avatar/physics/simulation";
+import { CapsuleContacts } from "../tasks/contacts";
+import type { SegmentsM } from "./armLengths";
+import { Capsules } from "./capsules";
 import type { RemoteBody } from "./remoteBody";
 import type { SurfaceBox } from "./setup";
 
 const JOINT_VALUES = 4 * JOINTS.length;
-const RELEASE_MARGIN_M = 0.005;
 const HEALTHY: Health = {
   restored: 0,
   resets: 0,
@@ -20,33 +21,36 @@ const HEALTHY: Health = {
   teleports: 0,
 };
 
-interface Box {
-  readonly low: readonly number[];
-  readonly high: readonly number[];
-}
-
 export class DelayedCopy implements RemoteBody {
   readonly pose = new Float64Array(3 + JOINT_VALUES);
   readonly fingers: Float64Array | null;
   readonly skippedGaps = 0;
   readonly health = HEALTHY;
-  touched = new Uint8Array(0);
-  near = new Uint8Array(0);
   hasMoved = false;
   private readonly buffer: DelayBuffer;
   private readonly given: Float64Array;
   private readonly capsules: Capsules;
-  private shown: readonly Box[] = [];
+  private contacts: CapsuleContacts;
 
   constructor(
     statureM: number,
     withFingers: boolean,
     private readonly surfaces: readonly SurfaceBox[],
+    segmentsM?: SegmentsM,
   ) {
     this.fingers = withFingers ? new Float64Array(4 * FINGER_PARTS.length) : null;
     this.given = new Float64Array(JOINT_VALUES + (this.fingers?.length ?? 0));
     this.buffer = new DelayBuffer(this.given.length);
-    this.capsules = new Capsules(statureM, withFingers);
+    this.capsules = new Capsules(statureM, withFingers, segmentsM);
+    this.contacts = this.contactsWith([]);
+  }
+
+  get touched(): Uint8Array {
+    return this.contacts.touched;
+  }
+
+  get near(): Uint8Array {
+    return this.contacts.near;
   }
 
   putOn(): void {
@@ -58,18 +62,12 @@ export class DelayedCopy implements RemoteBody {
   }
 
   showSurfaces(keys: readonly string[]): void {
-    this.shown = keys.map((key) => {
+    const shown = keys.map((key) => {
       const found = this.surfaces.find((surface) => surface.key === key);
       if (found === undefined) throw new SimulationError(`There is no surface ${key}.`);
-      const { centerM, halfSizeM } = found;
-      return {
-        low: centerM.map((value, i) => value - (halfSizeM[i] as number)),
-        high: centerM.map((value, i) => value + (halfSizeM[i] as number)),
-      };
+      return found;
     });
-    const size = keys.length * this.capsules.radiiM.length;
-    this.touched = new Uint8Array(size);
-    this.near = new Uint8Array(size);
+    this.contacts = this.contactsWith(shown);
   }
 
   change(): never {
@@ -89,27 +87,16 @@ export class DelayedCopy implements RemoteBody {
       }
     }
     this.hasMoved = true;
-    if (this.shown.length > 0) this.readTouches();
+    if (this.touched.length === 0) return;
+    this.capsules.place(pose, this.fingers);
+    this.contacts.find(this.capsules.axesM, this.capsules.radiiM);
   }
 
   dispose(): void {
-    this.shown = [];
+    this.contacts = this.contactsWith([]);
   }
 
-  private readTouches(): void {
-    const { capsules, touched, near, shown } = this;
-    capsules.place(this.pose, this.fingers);
-    const { axesM, radiiM } = capsules;
-    for (let surface = 0; surface < shown.length; surface++) {
-      const { low, high } = shown[surface] as Box;
-      for (let part = 0; part < radiiM.length; part++) {
-        const distanceM = segmentBoxDistanceM(axesM, 6 * part, low, high);
-        const pair = surface * radiiM.length + part;
-        const radiusM = radiiM[part] as number;
-        // Comparisons with NaN, of a hand that is not tracked, are false.
-        touched[pair] = distanceM <= radiusM ? 1 : 0;
-        near[pair] = distanceM <= radiusM + RELEASE_MARGIN_M ? 1 : 0;
-      }
-    }
+  private contactsWith(shown: readonly SurfaceBox[]): CapsuleContacts {
+    return new CapsuleContacts(shown, this.capsules.radiiM.length);
   }
 }

@@ -7,12 +7,12 @@
 import type { MjModel } from "@mujoco/mujoco";
 import type { Goals } from "@shared/avatar/goals";
 import { type Mujoco, modelFrom } from "@shared/avatar/mujoco";
+import { SimulationError } from "@shared/avatar/physics/modelTable";
 import type { AvatarOrder } from "../telemetry/wire/fromServer";
 import { DelayedCopy } from "./delayedCopy";
 import { FollowedBody } from "./followedBody";
 import { OwnBody, skeletonModel } from "./ownBody";
 import { partsOf } from "./parts";
-import { SimulationError } from "./physics/modelTable";
 import type { RemoteBody } from "./remoteBody";
 import type { AvatarAnswer, BodiesSetup } from "./setup";
 
@@ -40,7 +40,7 @@ export class BodiesEngine {
     this.ownModel =
       setup.avatar === "physics"
         ? modelFrom(mujoco, setup.bodies[0].mjcf)
-        : skeletonModel(mujoco, setup.statureM);
+        : skeletonModel(mujoco, setup.statureM, setup.segmentsM);
     this.own = new OwnBody(mujoco, this.ownModel);
     this.remotes = remotesOf(mujoco, setup);
     this.worn = this.remotes.get(null) as RemoteBody;
@@ -126,7 +126,8 @@ export class BodiesEngine {
 
 function remotesOf(mujoco: Mujoco, setup: BodiesSetup): ReadonlyMap<string | null, RemoteBody> {
   if (setup.avatar === "delayed_copy") {
-    return new Map([[null, new DelayedCopy(setup.statureM, setup.withFingers, setup.surfaces)]]);
+    const { statureM, withFingers, surfaces, segmentsM } = setup;
+    return new Map([[null, new DelayedCopy(statureM, withFingers, surfaces, segmentsM)]]);
   }
   const [own] = setup.bodies;
   const parts = partsOf(setup);

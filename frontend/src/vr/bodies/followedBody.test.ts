@@ -2,10 +2,10 @@ import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { FINGER_PARTS, JOINTS } from "@shared/avatar/anatomy.generated";
 import { loadMujoco, type Mujoco } from "@shared/avatar/mujoco";
+import type { ConfigurationFile, TargetSpace } from "@shared/avatar/physics/settings";
 import { beforeAll, describe, expect, it } from "vitest";
 import type { AvatarOrder } from "../telemetry/wire/fromServer";
 import { FollowedBody } from "./followedBody";
-import type { ConfigurationFile, TargetSpace } from "./physics/settings";
 import { answer, VECTORS } from "./testing/person";
 
 /** `tests/vectors/avatar/README.md` describes the file. */
@@ -26,6 +26,8 @@ interface Case {
   readonly fingers: boolean;
   readonly hips_scale: number;
   readonly jump?: number;
+  readonly layers?: ConfigurationFile["layers"];
+  readonly own_delays_s?: Readonly<Record<string, number>>;
   readonly events: readonly {
     readonly frame: number;
     readonly latency_s?: number;
@@ -54,11 +56,12 @@ beforeAll(async () => {
 
 describe("the remote body is that of the scripted headset", () => {
   it.each(vector.cases)("with $name", (one) => {
-    const configuration = { ...vector.configuration, target_space: one.target_space };
+    const { target_space, layers = null } = one;
+    const configuration = { ...vector.configuration, target_space, layers };
     const parts = one.fingers ? [...JOINTS, ...FINGER_PARTS] : JOINTS;
     const body = new FollowedBody(
       mujoco,
-      answer({ configuration }),
+      late(answer({ configuration }), one.own_delays_s ?? {}),
       one.hips_scale,
       one.fingers,
       parts,
@@ -97,6 +100,16 @@ describe("the remote body is that of the scripted headset", () => {
     body.dispose();
   });
 });
+
+/** An answer of which some motors of the model lag behind the others. */
+function late(answered: ReturnType<typeof answer>, delaysS: Readonly<Record<string, number>>) {
+  const mjcf = Object.entries(delaysS).reduce(
+    (text, [name, delayS]) =>
+      text.replace(new RegExp(`(<pid name="${name}".* delay=")0"`), `$1${delayS}"`),
+    answered.mjcf,
+  );
+  return { ...answered, mjcf };
+}
 
 /** The participant's pose (91) and fingers (120), blended between two key poses. */
 function pose(

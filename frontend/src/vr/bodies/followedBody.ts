@@ -1,12 +1,18 @@
 /** The remote body of a physics avatar: the server's `app/rehearsal/avatars.PhysicsBody`. */
 import { FINGER_PARTS, JOINTS } from "@shared/avatar/anatomy.generated";
 import type { Mujoco } from "@shared/avatar/mujoco";
+import { Follower } from "@shared/avatar/physics/follower";
+import {
+  asConfigured,
+  limitsInForce,
+  ordered,
+  type RunningSettings,
+  worldLimbs,
+} from "@shared/avatar/physics/settings";
+import { type Health, PhysicsAvatar } from "@shared/avatar/physics/simulation";
+import { TargetAngles } from "@shared/avatar/physics/targetAngles";
+import { SurfaceTouches } from "@shared/avatar/physics/touches";
 import type { AvatarOrder } from "../telemetry/wire/fromServer";
-import { Follower } from "./physics/follower";
-import { asConfigured, limitsInForce, ordered, type RunningSettings } from "./physics/settings";
-import { type Health, PhysicsAvatar } from "./physics/simulation";
-import { TargetAngles } from "./physics/targetAngles";
-import { SurfaceTouches } from "./physics/touches";
 import type { RemoteBody } from "./remoteBody";
 import type { AvatarAnswer } from "./setup";
 
@@ -49,7 +55,12 @@ export class FollowedBody implements RemoteBody {
     this.avatar.boxes.show([]);
     const present = new Set(this.avatar.table.bodies.keys());
     const angles = new TargetAngles(limitsInForce(configuration), present);
-    this.follower = new Follower(this.avatar, angles, configuration.target_space);
+    this.follower = new Follower(
+      this.avatar,
+      angles,
+      configuration.target_space,
+      worldLimbs(configuration),
+    );
     this.configured = asConfigured(configuration);
     this.fingers = withFingers ? new Float64Array(4 * FINGER_PARTS.length) : null;
     this.given = withFingers ? new Float64Array(4 * FINGER_PARTS.length) : null;

@@ -31,6 +31,12 @@ const OLDEST_S = 0.1;
 /** Share of a new frame in the running mean of what the worker adds. */
 const NEW_SHARE = 0.05;
 
+/** Fetch what the bodies need while nobody waits for it. */
+export async function fetchBodiesBeforehand(): Promise<void> {
+  const { fetchBeforehand } = await import("./worker/start");
+  await fetchBeforehand();
+}
+
 /** Start the worker and make the bodies in it. */
 export async function openBodiesInWorker(setup: BodiesSetup): Promise<BodiesInWorker> {
   const { startWorker } = await import("./worker/start");

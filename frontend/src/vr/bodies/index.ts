@@ -7,5 +7,5 @@ export {
   type PoseValues,
 } from "./bodies";
 export { openBodiesInPage } from "./inPage";
-export { type BodiesInWorker, openBodiesInWorker } from "./inWorker";
+export { type BodiesInWorker, fetchBodiesBeforehand, openBodiesInWorker } from "./inWorker";
 export type { AvatarAnswer, BodiesSetup, SurfaceBox } from "./setup";

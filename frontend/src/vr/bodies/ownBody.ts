@@ -5,11 +5,12 @@
  * participant's stature; otherwise those of the skeleton of that stature.
  */
 import type { MjModel } from "@mujoco/mujoco";
-import { AXES, JOINT_PARENTS, JOINTS, UNIT_SKELETON } from "@shared/avatar/anatomy.generated";
+import { AXES, JOINT_PARENTS, JOINTS } from "@shared/avatar/anatomy.generated";
 import type { Goals } from "@shared/avatar/goals";
 import { InverseKinematics, type Solution } from "@shared/avatar/ik";
 import { type Mujoco, modelFrom } from "@shared/avatar/mujoco";
-import { multiplyRows } from "./physics/numbers";
+import { multiplyRows } from "@shared/avatar/physics/numbers";
+import { type SegmentsM, unitSkeleton } from "./armLengths";
 
 const JOINT_ROW = new Map<string, number>(JOINTS.map((name, row) => [name, row]));
 
@@ -71,12 +72,12 @@ export class OwnBody {
 }
 
 /** The model of a person's skeleton for inverse kinematics; the caller must `delete()` it. */
-export function skeletonModel(mujoco: Mujoco, statureM: number): MjModel {
-  return modelFrom(mujoco, skeletonMjcf(statureM));
+export function skeletonModel(mujoco: Mujoco, statureM: number, segmentsM?: SegmentsM): MjModel {
+  return modelFrom(mujoco, skeletonMjcf(statureM, segmentsM));
 }
 
-function skeletonMjcf(statureM: number): string {
-  const { offsets } = UNIT_SKELETON;
+function skeletonMjcf(statureM: number, segmentsM?: SegmentsM): string {
+  const { offsets } = unitSkeleton(statureM, segmentsM);
   const body = (row: number): string => {
     const name = JOINTS[row] as string;
     const place = [0, 1, 2].map((i) => statureM * (offsets[3 * row + i] as number)).join(" ");

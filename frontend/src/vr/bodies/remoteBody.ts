@@ -1,6 +1,7 @@
 /** The body that the participant sees as their own and acts with. */
+
+import type { Health } from "@shared/avatar/physics/simulation";
 import type { AvatarOrder } from "../telemetry/wire/fromServer";
-import type { Health } from "./physics/simulation";
 
 export interface RemoteBody {
   /** Root position and 22 local rotations at the last frame (91). */

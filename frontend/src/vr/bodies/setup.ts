@@ -1,5 +1,7 @@
 /** What a page needs to make the participant's bodies. */
-import type { ConfigurationFile } from "./physics/settings";
+
+import type { ConfigurationFile } from "@shared/avatar/physics/settings";
+import type { SegmentsM } from "./armLengths";
 
 /** The answer of `POST /api/vr/avatar` (docs/protocol.md, section 2), as far as it is used here. */
 export interface AvatarAnswer {
@@ -34,6 +36,8 @@ export interface PhysicsSetup extends CommonSetup {
 export interface DelayedCopySetup extends CommonSetup {
   readonly avatar: "delayed_copy";
   readonly statureM: number;
+  /** Measured lengths of upper arm and forearm; usual ones for what is left out. */
+  readonly segmentsM?: SegmentsM;
   readonly surfaces: readonly SurfaceBox[];
 }
 

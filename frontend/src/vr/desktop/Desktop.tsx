@@ -9,6 +9,13 @@ import classes from "./Desktop.module.css";
 export const isDesktopAddress = (): boolean =>
   new URLSearchParams(window.location.search).get("screen") === "desktop";
 
+/** Stay on this screen after a reload, as if the page had been opened for it. */
+export function keepDesktopAddress(): void {
+  const address = new URL(window.location.href);
+  address.searchParams.set("screen", "desktop");
+  window.history.replaceState(null, "", address);
+}
+
 interface DesktopProps {
   readonly visit: {
     readonly isReady: boolean;
@@ -66,23 +73,24 @@ function Help(): JSX.Element {
     ["T", t("desktop.tPose")],
     ["H", t("desktop.help")],
   ];
+  if (!isShown) {
+    return (
+      <aside className={classes.hidden} aria-label={t("desktop.title")}>
+        <kbd>H</kbd>
+      </aside>
+    );
+  }
   return (
     <aside className={classes.help} aria-label={t("desktop.title")}>
-      {isShown ? (
-        <>
-          <p>{t("desktop.begin")}</p>
-          <dl>
-            {rows.map(([key, what]) => (
-              <div key={key}>
-                <dt>{key}</dt>
-                <dd>{what}</dd>
-              </div>
-            ))}
-          </dl>
-        </>
-      ) : (
-        <kbd>H</kbd>
-      )}
+      <p>{t("desktop.begin")}</p>
+      <dl>
+        {rows.map(([key, what]) => (
+          <div key={key}>
+            <dt>{key}</dt>
+            <dd>{what}</dd>
+          </div>
+        ))}
+      </dl>
     </aside>
   );
 }

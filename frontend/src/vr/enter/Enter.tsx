@@ -12,11 +12,15 @@ import { CodeEntry } from "@shared/ui/CodeEntry";
 import { Mark } from "@shared/ui/Mark";
 import { ErrorNotice, errorTexts, Notice } from "@shared/ui/Notice";
 import { useMutation } from "@tanstack/react-query";
-import { type JSX, type ReactNode, useEffect, useRef, useState } from "react";
-import { Desktop, isDesktopAddress } from "../desktop/Desktop";
+import { type JSX, type ReactNode, useCallback, useEffect, useRef, useState } from "react";
+import { Desktop, isDesktopAddress, keepDesktopAddress } from "../desktop/Desktop";
 import { useTexts } from "../i18n";
+import { givenName } from "../selftest/givenName";
 import classes from "./Enter.module.css";
+import { NameField } from "./NameField";
 import { forgetPairing, type Pairing, pair, storedPairing, storePairing } from "./pairing";
+import { SelfTestOffer, SelfTestOnScreen, SelfTestResult } from "./selftest/SelfTest";
+import { useSelfTest } from "./selftest/useSelfTest";
 import { deviceOf, type Support, supportOf } from "./support";
 import { useVisit, type VisitState } from "./useVisit";
 
@@ -79,7 +83,7 @@ function usePairing(onPaired: (pairing: Pairing) => void) {
   return useMutation({
     mutationFn: async (code: string) => {
       try {
-        return await pair(code, deviceOf(navigator.userAgent));
+        return await pair(code, givenName() || deviceOf(navigator.userAgent));
       } catch (error) {
         if (!(error instanceof ApiError) || error.code !== "wrong_device") throw error;
         const said = { message: t("pair.tablet"), remedy: t("pair.tabletRemedy") };
@@ -132,6 +136,7 @@ function PairingPage({ pairing, isDisconnected }: PairingPageProps): JSX.Element
         onCharacters={setCharacters}
         onCode={send}
       />
+      <NameField />
       <div className={classes.state}>
         {isPending && <Waiting text={t("pair.connecting")} />}
         {error !== null && (
@@ -167,7 +172,10 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
   const { t, language, setLanguage } = useTexts();
   const support = useSupport();
   const visit = useVisit(pairing);
-  const [isOnScreen] = useState(isDesktopAddress);
+  const test = useSelfTest(pairing, visit, language);
+  const [isTestOnScreen, setTestOnScreen] = useState(false);
+  const endTestOnScreen = useCallback(() => setTestOnScreen(false), []);
+  const [isOnScreen, setOnScreen] = useState(isDesktopAddress);
   const { failure, welcome } = visit;
   const isUnpaired = failure !== null && UNPAIRED.has(failure.code);
   useEffect(() => {
@@ -182,6 +190,14 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
     if (spoken !== language) setLanguage(spoken);
   }, [spoken, language, setLanguage]);
   if (isOnScreen && !visit.isOver && failure === null) return <Desktop visit={visit} />;
+  if (isTestOnScreen) return <SelfTestOnScreen test={test} onEnd={endTestOnScreen} />;
+  if (test.progress !== null) {
+    return (
+      <Frame>
+        <SelfTestResult test={test} />
+      </Frame>
+    );
+  }
   return (
     <Frame isSimulated={welcome !== null && welcome.time_scale !== 1}>
       <div>
@@ -198,6 +214,25 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
           {t(visit.vr === "left" ? "enter.again" : "enter.button")}
         </Button>
       )}
+      {!visit.isOver && isForScreens(support) && (
+        <Button
+          size="lg"
+          variant="light"
+          disabled={!visit.isReady}
+          onClick={() => {
+            keepDesktopAddress();
+            setOnScreen(true);
+          }}
+        >
+          {t("enter.onScreen")}
+        </Button>
+      )}
+      <SelfTestOffer
+        test={test}
+        hasVr={support === "ready"}
+        onScreen={() => setTestOnScreen(true)}
+      />
+      <NameField />
       <div className={classes.state}>
         <VisitNotices visit={visit} />
         <SupportNotice support={support} />
@@ -249,6 +284,11 @@ function useSupport(): Support | null {
   }, []);
   return support;
 }
+
+/** Whether this is a computer without VR, on which mouse and keyboard can take its place. */
+const isForScreens = (support: Support | null): boolean =>
+  (support === "no_webxr" || support === "no_headset") &&
+  deviceOf(navigator.userAgent) === "computer";
 
 function SupportNotice({ support }: { readonly support: Support | null }): JSX.Element | null {
   const { t } = useTexts();

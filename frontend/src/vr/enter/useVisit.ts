@@ -4,6 +4,7 @@ import { listenTo } from "../desktop/input";
 import type { Vr } from "../session";
 import {
   type Failure,
+  type HeadsetState,
   openTelemetryInWorker,
   type Status,
   type TelemetryClient,
@@ -21,6 +22,8 @@ export interface VisitState {
   readonly isReady: boolean;
   readonly isConnected: boolean;
   readonly isOver: boolean;
+  /** Nothing of the session is under way that a test of the headset would disturb. */
+  readonly isBetween: boolean;
   /** Why the connection has ended for good. */
   readonly failure: Failure | null;
   readonly vr: VrState;
@@ -45,6 +48,7 @@ export function useVisit(pairing: Pairing): VisitState {
   const [status, setStatus] = useState<Status | null>(null);
   const [failure, setFailure] = useState<Failure | null>(null);
   const [isOver, setOver] = useState(false);
+  const [isBetween, setBetween] = useState(false);
   const [vrState, setVrState] = useState<VrState>("not_yet");
   const [problem, setProblem] = useState<string | null>(null);
   const vr = useRef<Vr | null>(null);
@@ -60,15 +64,19 @@ export function useVisit(pairing: Pairing): VisitState {
     const open = async () => {
       client = await openTelemetryInWorker(optionsFor(pairing), { onStatus: setStatus, signal });
       if (signal.aborted) return client.close();
-      client.onState(({ status }) => setOver(OVER.has(status)));
-      setOver(OVER.has(client.state.status));
+      const follow = (state: HeadsetState) => {
+        setOver(OVER.has(state.status));
+        setBetween(isBetweenSteps(state));
+      };
+      client.onState(follow);
+      follow(client.state);
       // The code of VR is fetched before the button can be pressed: a click's permission to enter
       // VR lasts for seconds only.
       const { Vr } = await import("../session");
       vr.current = new Vr({
         telemetry: client,
         token: pairing.token,
-        withFingers: false,
+        withFingers: knowsHands(),
         onEnd: () => setVrState("left"),
         onFailure: fail,
       });
@@ -114,6 +122,7 @@ export function useVisit(pairing: Pairing): VisitState {
     isReady: telemetry !== null,
     isConnected: status?.connected ?? false,
     isOver,
+    isBetween,
     failure: status?.failure ?? failure,
     vr: vrState,
     problem,
@@ -129,6 +138,25 @@ function optionsFor({ sessionId, token }: Pairing) {
     token,
     name: NAME,
     storageKey: sessionId,
-    abilities: { avatars: ["delayed_copy", "physics"], changesAvatar: true, goals: true },
+    fingers: knowsHands(),
+    abilities: {
+      avatars: ["delayed_copy", "physics"],
+      changesAvatar: true,
+      goals: true,
+      panels: true,
+      calibrates: true,
+    },
   };
 }
+
+/** Before the step in which the body is entered, and after the end: nobody is wanted in VR. */
+const isBetweenSteps = ({ status, phase, step_kind, ...state }: HeadsetState): boolean => {
+  const isInBody = state.materialised || state.recording || step_kind === "materialise";
+  return OVER.has(status) || (phase === null && !isInBody);
+};
+
+/**
+ * Whether this browser can track hands. A run says hello before it is known whether somebody lays
+ * the controllers down, so the streams of fingers are announced wherever that can happen.
+ */
+export const knowsHands = (): boolean => "XRHand" in globalThis;

@@ -1,11 +1,17 @@
+import { selfTestDe } from "../selftest/texts/de";
 import type { en } from "./en";
 
 /** The texts of the headset's page in German. */
 export const de: Readonly<Record<keyof typeof en, string>> = {
+  ...selfTestDe,
   "enter.title": "An der Studie teilnehmen",
   "enter.lead":
     "Setzen Sie die VR-Brille auf und achten Sie darauf, dass das Bild scharf ist. Drücken Sie dann auf den Knopf.",
   "enter.button": "VR starten",
+  "enter.name": "Name dieses Geräts",
+  "enter.name.hint":
+    "Etwa „Quest 3, Raum 2“. Dieser Browser behält ihn; er steht bei Tests und bei der nächsten Kopplung.",
+  "enter.onScreen": "Auf diesem Bildschirm handeln",
   "enter.again": "Zurück in die VR",
   "enter.entering": "VR wird gestartet",
   "enter.language": "Sprache",
@@ -56,7 +62,7 @@ export const de: Readonly<Record<keyof typeof en, string>> = {
     "Aktualisieren Sie auf visionOS 2 oder neuer. Unter visionOS 1 schalten Sie WebXR ein: Einstellungen > Apps > Safari > Erweitert > Feature-Flags.",
   "support.no_webxr.android_xr": "Öffnen Sie diese Seite in Chrome und aktualisieren Sie es.",
   "support.no_webxr.computer":
-    "Öffnen Sie diese Seite im Browser der VR-Brille, oder in Chrome oder Edge auf einem Rechner mit VR-Brille.",
+    "Öffnen Sie diese Seite im Browser der VR-Brille, oder in Chrome oder Edge auf einem Rechner mit VR-Brille. Um die Studie ohne VR-Brille auszuprobieren, koppeln Sie diese Seite und wählen Sie „Auf diesem Bildschirm handeln“.",
   "support.no_headset": "Es wurde keine VR-Brille gefunden",
   "support.no_headset.quest":
     "Starten Sie den Browser der VR-Brille neu und öffnen Sie diese Seite noch einmal.",
@@ -65,7 +71,7 @@ export const de: Readonly<Record<keyof typeof en, string>> = {
   "support.no_headset.vision_pro": "Starten Sie Safari neu und öffnen Sie diese Seite noch einmal.",
   "support.no_headset.android_xr": "Starten Sie Chrome neu und öffnen Sie diese Seite noch einmal.",
   "support.no_headset.computer":
-    "Starten Sie SteamVR oder das Programm der VR-Brille und schalten Sie die Brille ein. Diese Seite bemerkt es von selbst.",
+    "Starten Sie SteamVR oder das Programm der VR-Brille und schalten Sie die Brille ein. Diese Seite bemerkt es von selbst. Um die Studie ohne VR-Brille auszuprobieren, koppeln Sie diese Seite und wählen Sie „Auf diesem Bildschirm handeln“.",
   "desktop.title": "Desktop-Modus",
   "desktop.starting": "Die Studie wird auf diesem Bildschirm vorbereitet",
   "desktop.begin":

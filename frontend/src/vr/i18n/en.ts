@@ -1,8 +1,15 @@
 /** The texts of the headset's page in English; `de.ts` has the same keys. */
+import { selfTestEn } from "../selftest/texts/en";
+
 export const en = {
+  ...selfTestEn,
   "enter.title": "Enter the study",
   "enter.lead": "Put the headset on and make sure the picture is sharp. Then press the button.",
   "enter.button": "Enter VR",
+  "enter.name": "Name of this device",
+  "enter.name.hint":
+    "Such as “Quest 3, room 2”. Kept by this browser, and shown with tests and at the next pairing.",
+  "enter.onScreen": "Act on this screen",
   "enter.again": "Return to VR",
   "enter.entering": "Entering VR",
   "enter.language": "Language",
@@ -51,14 +58,14 @@ export const en = {
     "Update to visionOS 2 or newer. On visionOS 1 switch on WebXR in Settings > Apps > Safari > Advanced > Feature Flags.",
   "support.no_webxr.android_xr": "Open this page in Chrome and update it.",
   "support.no_webxr.computer":
-    "Open this page in the headset's own browser, or in Chrome or Edge on a computer with a headset.",
+    "Open this page in the headset's own browser, or in Chrome or Edge on a computer with a headset. To try the study without a headset, pair this page and choose “Act on this screen”.",
   "support.no_headset": "No headset was found",
   "support.no_headset.quest": "Restart the headset's browser and open this page again.",
   "support.no_headset.pico": "Restart the headset's browser and open this page again.",
   "support.no_headset.vision_pro": "Restart Safari and open this page again.",
   "support.no_headset.android_xr": "Restart Chrome and open this page again.",
   "support.no_headset.computer":
-    "Start SteamVR or the headset's own program and switch the headset on. This page notices it by itself.",
+    "Start SteamVR or the headset's own program and switch the headset on; this page notices it by itself. To try the study without a headset, pair this page and choose “Act on this screen”.",
   "desktop.title": "Desktop mode",
   "desktop.starting": "Preparing the study on this screen",
   "desktop.begin": "Click into the picture to look around with the mouse. Esc releases it.",

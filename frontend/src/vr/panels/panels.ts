@@ -9,17 +9,28 @@ import { Group } from "three";
 import { headingOf } from "../tracking/places";
 import type { TrackedFrame } from "../tracking/tracked";
 import type { PanelContent } from "./content";
+import { PanelLayoutError } from "./surface/layout";
 import { type HandPointing, hitOf, Pointer, type Side } from "./surface/pointing";
+import type { PanelScreen } from "./surface/screen";
 import { PANEL_DISTANCE_M, PanelSurface } from "./surface/surface";
 import type { Measure } from "./surface/wrap";
 
 /** Outside of this angle beside the middle of the view, a panel cannot be read. */
 const OUT_OF_SIGHT_RAD = (55 * Math.PI) / 180;
+/** How far to the right a panel stands that leaves the mirror free. */
+const BESIDE_RAD = (32 * Math.PI) / 180;
 const NEAR_M = 0.5;
 const FAR_M = 2.6;
 const AWAY_S = 1.5;
 const LEAST_DISTANCE_M = 0.8;
 const WALL_GAP_M = 0.15;
+
+export interface PanelsOptions {
+  /** The plane of the wall with the mirror, behind which a panel must not stand. */
+  readonly wallZM?: number;
+  /** Said in place of what no panel can hold. */
+  readonly tooLong?: string;
+}
 
 export class Panels {
   /** To be added to the scene once. */
@@ -27,18 +38,20 @@ export class Panels {
   readonly #surface: PanelSurface;
   readonly #pointer = new Pointer();
   readonly #wallZM: number;
+  readonly #tooLong: string;
   #content: PanelContent | null = null;
   #isNew = false;
   #isPlaced = false;
   #isLow = false;
+  #isBeside = false;
   #shownKey = "";
   #awaySinceS: number | null = null;
   /** Called when something was pressed: for a sound, or a pulse of the controller. */
   onPressed: ((side: Side | null) => void) | null = null;
 
-  /** `wallZM`: the plane of the wall with the mirror, behind which a panel must not stand. */
-  constructor({ wallZM = Number.NEGATIVE_INFINITY }: { readonly wallZM?: number } = {}) {
+  constructor({ wallZM = Number.NEGATIVE_INFINITY, tooLong = "" }: PanelsOptions = {}) {
     this.#wallZM = wallZM;
+    this.#tooLong = tooLong;
     this.#surface = new PanelSurface();
     this.object.name = "panels";
     this.object.add(this.#surface.object, this.#surface.beam);
@@ -73,14 +86,17 @@ export class Panels {
     this.#isPlaced = false;
   }
 
-  /** One frame: draw what has changed, follow the rays, take a press. */
-  update(frame: TrackedFrame): void {
+  /**
+   * One frame: draw what has changed, follow the rays, take a press. `canPress`: false while the
+   * hands mean something else.
+   */
+  update(frame: TrackedFrame, canPress = true): void {
     this.#draw(frame.timeS);
     if (this.#content === null) return;
     this.#place(frame);
     const pointed = this.#pointer.update(frame.timeS, {
-      left: this.#pointing(frame, "left"),
-      right: this.#pointing(frame, "right"),
+      left: this.#pointing(frame, "left", canPress),
+      right: this.#pointing(frame, "right", canPress),
     });
     const ray = pointed.side === null ? null : frame.hands[pointed.side].ray;
     const hit = ray === null ? null : hitOf(ray, this.#surface.board);
@@ -94,22 +110,33 @@ export class Panels {
     if (!this.#isNew) return;
     this.#isNew = false;
     const screen = this.#content?.screen ?? null;
-    this.#surface.show(screen);
-    if (screen !== null && (screen.isLow ?? false) !== this.#isLow) {
-      this.#isLow = screen.isLow ?? false;
-      this.#isPlaced = false;
+    try {
+      this.#surface.show(screen);
+    } catch (error) {
+      if (!(error instanceof PanelLayoutError) || screen === null) throw error;
+      // The loop must go on, and the way back or on must stay open.
+      const { buttons = [] } = screen;
+      this.#surface.show({ key: screen.key, problem: this.#tooLong, buttons });
     }
+    if (screen !== null) this.#standAs(screen);
     if (screen !== null && screen.key !== this.#shownKey) this.#pointer.screenChanged(nowS);
     this.#shownKey = screen?.key ?? "";
+  }
+
+  /** Another place in the view: the panel goes there at once. */
+  #standAs({ isLow = false, isBeside = false }: PanelScreen): void {
+    if (isLow !== this.#isLow || isBeside !== this.#isBeside) this.#isPlaced = false;
+    this.#isLow = isLow;
+    this.#isBeside = isBeside;
   }
 
   #place({ eyes, timeS }: TrackedFrame): void {
     if (eyes === null) return;
     const heading = headingOf(eyes);
     if (!this.#isPlaced) {
-      const distanceM = this.#distanceM(eyes.positionM, heading);
-      const { isLow } = this.#content?.screen ?? {};
-      this.#surface.place(eyes.positionM, heading, distanceM, isLow);
+      const towards = heading - (this.#isBeside ? BESIDE_RAD : 0);
+      const distanceM = this.#distanceM(eyes.positionM, towards);
+      this.#surface.place(eyes.positionM, towards, distanceM, this.#isLow);
       this.#isPlaced = true;
       this.#awaySinceS = null;
       return;
@@ -131,9 +158,9 @@ export class Panels {
     return Math.min(PANEL_DISTANCE_M, Math.max(LEAST_DISTANCE_M, toWallM));
   }
 
-  #pointing(frame: TrackedFrame, side: Side): HandPointing {
+  #pointing(frame: TrackedFrame, side: Side, canPress: boolean): HandPointing {
     const { ray, isSelecting } = frame.hands[side];
-    const hit = ray === null ? null : hitOf(ray, this.#surface.board);
+    const hit = ray === null || !canPress ? null : hitOf(ray, this.#surface.board);
     return { hit, target: this.#surface.targetAt(hit)?.target ?? null, isSelecting };
   }
 

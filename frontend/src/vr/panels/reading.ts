@@ -99,6 +99,8 @@ export interface ReadingOptions {
   readonly onRead: (() => void) | null;
   /** Called when the participant has a question; null where nobody can be called. */
   readonly onAsk?: (() => void) | null;
+  /** Whether it stands beside the view straight ahead, where the mirror is. */
+  readonly isBeside?: boolean;
 }
 
 /** A text with "next" and "back", and on its last page the confirmation that it was read. */
@@ -132,7 +134,7 @@ export class Reading implements PanelContent {
   }
 
   #screenOf(body: readonly Paragraph[], page: number, pages: number): PanelScreen {
-    const { title, words, onRead, onAsk = null } = this.#options;
+    const { title, words, onRead, onAsk = null, isBeside = false } = this.#options;
     const isLast = page >= pages - 1;
     const ahead = isLast
       ? onRead === null
@@ -148,6 +150,7 @@ export class Reading implements PanelContent {
     const text = words("reading.page", { page: page + 1, pages });
     return {
       key: `reading ${title} ${page}`,
+      isBeside,
       title,
       body,
       buttons: [...back, ...ask, ...ahead],

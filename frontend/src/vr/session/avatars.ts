@@ -7,6 +7,7 @@ import type { components } from "@shared/api/schema";
 import type { BodyModel } from "@shared/stage/skin/bodyModel";
 import type { BodyBinding } from "@shared/stage/skin/pose";
 import { readBody } from "@shared/stage/skin/readBody";
+import type { Measures } from "../calibration";
 
 export type SessionAvatar = components["schemas"]["SessionAvatar"];
 /** By name of the body; null is the body of the avatar's configuration. */
@@ -20,14 +21,14 @@ export type Avatars = ReadonlyMap<string | null, SessionAvatar>;
  */
 export async function requestAvatars(
   token: string,
-  statureM: number,
+  { statureM, segmentsM }: Measures,
   named: readonly string[],
 ): Promise<Avatars> {
   const request = async (body: string | null): Promise<[string | null, SessionAvatar]> => {
     const avatar = await answer<SessionAvatar>(
       server.POST("/api/vr/avatar", {
         headers: bearer(token),
-        body: { stature_m: statureM, body, segments_m: {} },
+        body: { stature_m: statureM, body, segments_m: { ...segmentsM } },
       }),
     );
     return [body, avatar];

@@ -1,23 +1,22 @@
-import { NO_GOALS } from "@shared/avatar/goals";
 import { describe, expect, it } from "vitest";
 import { Headset } from "./headset";
 import type { View } from "./ports";
-import { FakeBodies, FakeSource, FakeTelemetry, ORDER, STATE } from "./testing";
+import { FakeBodies, FakeSource, FakeTelemetry, Kept, ORDER, STATE } from "./testing";
 
 const RATE_HZ = 90;
 /** WebXR's frames are told apart from a screen's by being there. */
 const XR = {} as XRFrame;
 
-async function worn({ lateBy = 0, state = STATE } = {}) {
+async function worn({ lateBy = 0, state = STATE, source = new FakeSource() } = {}) {
   const telemetry = new FakeTelemetry();
   telemetry.state = state;
   const bodies = new FakeBodies(lateBy);
-  const source = new FakeSource();
   const views: View[] = [];
   const headset = new Headset({
     telemetry: telemetry.client,
     source,
-    calibrator: { statureM: null, goals: () => NO_GOALS },
+    keep: new Kept(),
+    onSquare: () => undefined,
     prepareBodies: async () => bodies,
     scenery: { show: (view) => views.push(view) },
     withFingers: false,
@@ -72,13 +71,17 @@ describe("the headset", () => {
 
   it("puts the body on when both grips are pressed, and not before", async () => {
     const state = { ...STATE, materialised: false, recording: false, step_kind: "materialise" };
-    const { telemetry, source, draw, views } = await worn({ state });
+    const source = new FakeSource({ statureM: 1.75, spanM: 1.8 });
+    const { telemetry, draw, views } = await worn({ state, source });
     draw(1);
-    expect(telemetry.reports).toEqual([]);
+    // Nobody wears anything that could be calibrated, and that is said.
+    expect(telemetry.reports).toEqual([
+      expect.objectContaining({ kind: "calibration", cause: "first", notices: ["nothing_worn"] }),
+    ]);
     expect(views.at(-1)?.place).toBe("stepping_in");
     source.areGripsPressed = true;
     draw(0.5);
-    expect(telemetry.reports.map(({ kind }) => kind)).toEqual(["materialised"]);
+    expect(telemetry.reports.at(-1)?.kind).toBe("materialised");
     expect(views.at(-1)?.place).toBe("acting");
   });
 
@@ -94,6 +97,83 @@ describe("the headset", () => {
     expect(paused).toMatchObject({ what: "paused", cause: "asleep", t_s: lastS });
     expect(paused?.active_s).toBeLessThan(1.1);
     expect(views.length).toBe(drawn + 2);
+  });
+
+  it("leaves a request to resume pending until the scene is looked at again", async () => {
+    const { telemetry, draw, headset, nowS } = await worn();
+    telemetry.state = { ...STATE, phase: ORDER };
+    draw(1.5);
+    const lastS = nowS();
+    headset.leave("asleep");
+    const paused = phases(telemetry).at(-1);
+    expect(paused).toMatchObject({ what: "paused", cause: "asleep", t_s: lastS });
+    const active_s = paused?.active_s ?? Number.NaN;
+    // Frames go on behind the device's own menu.
+    telemetry.state = {
+      ...STATE,
+      phase: { ...ORDER, status: "paused", active_s, resuming: true },
+    };
+    draw(2);
+    expect(phases(telemetry).at(-1)).toBe(paused);
+    expect(headset.run?.activeS(nowS())).toBe(active_s);
+    headset.lookAgain();
+    draw(1 / RATE_HZ);
+    expect(phases(telemetry).at(-1)).toMatchObject({ what: "resumed", t_s: nowS(), active_s });
+  });
+
+  it("prepares a phase only while it is looked at", async () => {
+    const { telemetry, draw, headset } = await worn();
+    telemetry.state = { ...STATE, phase: ORDER };
+    draw(ORDER.preparation_s / 2);
+    headset.leave("asleep");
+    draw(10);
+    expect(phases(telemetry)).toEqual([]);
+    headset.lookAgain();
+    draw(0.4 * ORDER.preparation_s);
+    expect(phases(telemetry)).toEqual([]);
+    draw(0.2 * ORDER.preparation_s);
+    expect(phases(telemetry)).toEqual([expect.objectContaining({ what: "started", active_s: 0 })]);
+  });
+
+  it("does not resume while nobody's head is measured, as in a headset that was taken off", async () => {
+    const source = new FakeSource();
+    const { telemetry, draw, nowS } = await worn({ source });
+    telemetry.state = { ...STATE, phase: { ...ORDER, duration_s: 60 } };
+    draw(1);
+    source.headStillAtM = 0.5;
+    draw(3);
+    const paused = phases(telemetry).at(-1);
+    expect(paused).toMatchObject({ what: "paused", cause: "asleep" });
+    const active_s = paused?.active_s ?? Number.NaN;
+    telemetry.state = {
+      ...STATE,
+      phase: { ...ORDER, duration_s: 60, status: "paused", active_s, resuming: true },
+    };
+    draw(1);
+    expect(phases(telemetry).at(-1)).toBe(paused);
+    source.headStillAtM = null;
+    draw(1 / RATE_HZ);
+    expect(phases(telemetry).at(-1)).toMatchObject({ what: "resumed", t_s: nowS() });
+  });
+
+  it("does not resume after the participant asked to stop, whatever state is older than that", async () => {
+    const { telemetry, draw, headset } = await worn();
+    telemetry.state = { ...STATE, phase: ORDER };
+    draw(1);
+    headset.stop("recentred");
+    draw(1 / RATE_HZ);
+    const paused = phases(telemetry).at(-1);
+    const order = { ...ORDER, status: "paused", active_s: paused?.active_s ?? Number.NaN };
+    // The operator's request and the participant's call are on their way at the same time.
+    headset.call("stop");
+    telemetry.settled = false;
+    telemetry.state = { ...STATE, phase: { ...order, resuming: true } };
+    draw(0.5);
+    // The state that includes the call comes before its acknowledgement.
+    telemetry.state = { ...STATE, phase: order };
+    telemetry.settled = true;
+    draw(0.5);
+    expect(phases(telemetry).at(-1)).toBe(paused);
   });
 
   it("reports how the goals are known at its first frame and whenever that changes", async () => {

@@ -6,8 +6,10 @@
  * (`docs/protocol.md`); `app/rehearsal/headset.py` is the same in Python, with the same order of
  * frames and reports.
  */
-import { GOAL_PARTS, type Goals } from "@shared/avatar/goals";
+import { GOAL_PARTS } from "@shared/avatar/goals";
+import type { Place as Pose } from "@shared/avatar/hips";
 import type { Bodies, BodiesFrame } from "../bodies/bodies";
+import type { Measures } from "../calibration";
 import { layoutsOf, Phases, type TaskLayout, type TimedRun } from "../tasks";
 import {
   FINGER_VALUES_PER_FRAME,
@@ -17,20 +19,27 @@ import {
   type TelemetryClient,
   VALUES_PER_FRAME,
 } from "../telemetry";
+import { SteadyGoals } from "../tracking/steady";
 import type { GoalPart, GoalState, TrackedFrame, TrackingSource } from "../tracking/tracked";
-import type { Calibrator, Place, PrepareBodies, Scenery } from "./ports";
+import { Calibrating, type Keep } from "./calibrating";
+import type { Guide, Place, PrepareBodies, Scenery } from "./ports";
 import { Recorder } from "./recorder";
 import { SleepWatch } from "./sleep";
 
-/** The stature of a participant of whom nothing is known yet, m. */
-const USUAL_STATURE_M = 1.72;
+/** Bodies are made anew before they are stepped into if a length has changed by this, m. */
+const OTHER_BODY_M = 0.005;
 
 export interface HeadsetParts {
   readonly telemetry: TelemetryClient;
   readonly source: TrackingSource;
-  readonly calibrator: Calibrator;
+  /** Where a calibration is kept while the session lasts. */
+  readonly keep: Keep;
+  /** The start square is there, in the world of the tracked frames so far. */
+  readonly onSquare: (worldFromSquare: Pose) => void;
   readonly prepareBodies: PrepareBodies;
   readonly scenery: Scenery;
+  /** Panels and how one stops; none in tests of the loop alone. */
+  readonly guide?: Guide;
   /** Whether the streams of fingers were announced. */
   readonly withFingers: boolean;
   /** Another body is worn from the next frame on, by its name; null is the configuration's. */
@@ -40,29 +49,43 @@ export interface HeadsetParts {
 }
 
 export class Headset {
+  /** When and how the participant is calibrated; its panel tells it what was pressed. */
+  readonly calibrating: Calibrating;
   readonly #parts: HeadsetParts;
   readonly #recorder: Recorder;
   readonly #phases: Phases;
   readonly #sleep = new SleepWatch();
+  readonly #steady = new SteadyGoals();
   #source: TrackingSource;
   #bodies: Bodies | null = null;
-  #isPreparing = false;
+  /** What the bodies are made for, or are being made for. */
+  #madeFor: Measures | null = null;
   #hasReportedBody = false;
   #bodyWorn: string | null = null;
   /** Surfaces by parts of the boxes that are shown. */
   #touchCount = 0;
   #revision = 0;
   #hasMoved = false;
+  #isRecording = false;
   #goalStates = "";
   readonly #fingers = new Float64Array(FINGER_VALUES_PER_FRAME);
   #timeS = 0;
   #isFrozen = false;
+  #isLookedAt = true;
   readonly #freezable = new ShownPose();
 
   constructor(parts: HeadsetParts) {
     this.#parts = parts;
     this.#source = parts.source;
     this.#recorder = new Recorder(parts.telemetry, parts);
+    this.calibrating = new Calibrating({
+      sessionId: parts.telemetry.welcome.session_id,
+      keep: parts.keep,
+      report: (body) => this.#report([body]),
+      onBegin: () => this.#phases.stop(this.#timeS, "calibration"),
+      onChange: () => this.#steady.restart(),
+      onSquare: parts.onSquare,
+    });
     this.#phases = new Phases(layoutsOf(parts.telemetry.welcome.tasks), {
       report: (reports) => this.#report(reports),
       enter: (order, layout) => this.#enterPhase(order, layout),
@@ -74,6 +97,11 @@ export class Headset {
   /** The time of the newest frame, s. */
   get timeS(): number {
     return this.#timeS;
+  }
+
+  /** Frames recorded in this run, whether sent already or not. */
+  get recorded(): number {
+    return this.#recorder.nextSeq;
   }
 
   /** The bodies as they were computed last; null before. */
@@ -93,52 +121,61 @@ export class Headset {
   /** Track by other devices from the next frame on. */
   trackBy(source: TrackingSource): void {
     this.#source = source;
+    this.#steady.restart();
   }
 
   /** Draw one frame. `timeS`: the client's monotonic time; `xr`: null without WebXR. */
   frame(timeS: number, xr: XRFrame | null): void {
-    const { telemetry, calibrator, scenery } = this.#parts;
+    const { telemetry, scenery, guide } = this.#parts;
+    const { calibrating } = this;
     const state = telemetry.state;
     const lastS = this.#sleep.lastS;
     const tracked = this.#source.read(timeS, xr);
     const sleep = this.#sleep.frame(timeS, xr === null ? null : tracked.eyes);
     this.#timeS = timeS;
-    if (sleep === "gap" && lastS !== null) this.#phases.wake(lastS, timeS);
     if (sleep === "still") this.#phases.stop(timeS, "asleep");
+    // Some devices keep calling frames that nobody sees: each is as asleep as a gap.
+    const isGap = sleep === "gap" || !this.#isSeen;
+    if (isGap && lastS !== null) this.#phases.wake(lastS, timeS);
+    calibrating.frame({
+      state,
+      isSettled: telemetry.settled,
+      tracked,
+      source: this.#source,
+      goalErrorsM: this.#bodies?.latest()?.goalErrorsM ?? null,
+    });
     this.#follow(state, tracked);
     // As this frame is shown: the frame in which the time is up still moves.
     this.#isFrozen = this.#phases.run?.isFrozen ?? false;
     const bodies = this.#bodies;
     if (bodies !== null) {
-      // A script or a capture moves joints; devices have to be calibrated first.
-      const goals =
-        this.#source.knownBody === null ? calibrator.goals(tracked) : placesOf(tracked.parts);
+      const goals = this.#steady.steady(tracked, calibrating.calibrator.goals(tracked));
       bodies.step({ timeS, goals, fingers: this.#fingersOf(tracked) });
       this.#perform(bodies, state, tracked);
     }
     const shown = this.#bodies?.latest() ?? null;
     const { run } = this.#phases;
     const place = this.#placeIn(state);
-    scenery.show({
-      timeS,
-      place,
-      state,
-      tracked,
-      bodies: shown,
-      run,
-      isFrozen: this.#isFrozen,
-      isCurtainDrawn: false,
-    });
+    const calibration = calibrating.prompt;
+    const moment = { timeS, place, state, tracked, run, calibration };
+    const cover = guide?.follow(moment) ?? "none";
+    scenery.show({ ...moment, bodies: shown, isFrozen: this.#isFrozen, cover });
     this.#recorder.send(timeS);
   }
 
   /**
    * The headset is not looked at any more: its session was hidden, or has ended. The clock stops at
-   * the last frame.
+   * the last frame, and whatever the operator asks for waits until `lookAgain`.
    */
   leave(cause: string): void {
+    this.#isLookedAt = false;
     if (this.#sleep.lastS !== null) this.#phases.stop(this.#sleep.lastS, cause);
     this.#recorder.end(this.#timeS);
+  }
+
+  /** The scene is looked at again: a request to resume that came meanwhile is carried out. */
+  lookAgain(): void {
+    this.#isLookedAt = true;
   }
 
   /** Stop the clock now, for a reason of the headset's own; the operator resumes. */
@@ -146,10 +183,31 @@ export class Headset {
     this.#phases.stop(this.#timeS, cause);
   }
 
+  /** The participant calls the experimenter; to stop also stops the clock, at this frame. */
+  call(what: "stop" | "help"): void {
+    this.#report([{ kind: "call", t_s: this.#timeS, what }]);
+    if (what === "stop") this.stop("participant");
+  }
+
+  /**
+   * The device has moved its origin: the clock stops, and the body moves over softly. `isKept`: where
+   * the square is now is known; if not, the participant stands on it again.
+   */
+  recentred(isKept: boolean): void {
+    this.#steady.restart();
+    this.stop("recentred");
+    if (!isKept) this.calibrating.squareLost();
+  }
+
   dispose(): void {
     this.leave("closed");
     this.#bodies?.dispose();
     this.#bodies = null;
+  }
+
+  /** Whether the scene is in front of open eyes, as far as the device tells. */
+  get #isSeen(): boolean {
+    return this.#isLookedAt && !this.#sleep.isStill;
   }
 
   #perform(bodies: Bodies, state: HeadsetState, tracked: TrackedFrame): void {
@@ -161,12 +219,15 @@ export class Headset {
     const phases = this.#phases;
     this.#recorder.computed(shown);
     if (!this.#isFrozen) this.#freezable.keep(shown);
+    if (this.#isRecording && !state.recording) this.#recorder.flush(timeS);
+    this.#isRecording = state.recording;
     if (state.recording) {
       this.#reportGoals(tracked);
       const seen = this.#isFrozen ? this.#freezable : shown;
       this.#recorder.frame(timeS, seen, phases.phaseId, phases.run?.clockRuns ?? false);
     }
-    const goesOn = telemetry.status.connected || telemetry.welcome.on_disconnect === "continue";
+    const { connected } = telemetry.status;
+    const goesOn = this.#isSeen && (connected || telemetry.welcome.on_disconnect === "continue");
     const { run } = phases;
     // The newest frame may have been computed before the boxes of this phase were there.
     phases.frame(timeS, shown.touched.length === this.#touchCount ? shown : null, goesOn);
@@ -176,18 +237,19 @@ export class Headset {
   /** Bring the headset in line with the session's state. */
   #follow(state: HeadsetState, tracked: TrackedFrame): void {
     if (state.materialised) this.#hasReportedBody = true;
-    if (state.materialised && this.#bodies === null) this.#prepare(state);
-    if (state.step_kind === "materialise" && !this.#hasReportedBody) {
-      this.#materialise(state, tracked);
-    }
+    if (this.#hasReportedBody || state.step_kind === "materialise") this.#prepare(state);
     if (this.#bodies === null) return;
+    if (state.step_kind === "materialise" && !this.#hasReportedBody) this.#materialise(tracked);
     this.#changeAvatar(state);
+    // The clock stays where it is until the calibration is done, and while nobody sees the scene; the
+    // operator resumes it.
+    if (this.calibrating.isUnderway || !this.#isSeen) return;
     this.#phases.follow(state, this.#parts.telemetry.settled, this.#timeS);
   }
 
   /** The participant stands in the figure and presses both grips: the body appears. */
-  #materialise(state: HeadsetState, { hands }: TrackedFrame): void {
-    if (this.#bodies === null) this.#prepare(state);
+  #materialise({ hands }: TrackedFrame): void {
+    if (this.calibrating.isDue) return;
     const isAsked = hands.left.isSqueezing && hands.right.isSqueezing;
     if (!isAsked || !this.#hasMoved) return;
     this.#hasReportedBody = true;
@@ -195,15 +257,23 @@ export class Headset {
   }
 
   /**
-   * Request every body of the study at once: they are ready when a block begins, and neither the
-   * time nor the kind of a request reveals which is worn next.
+   * Request every body of the study at once, for the measured lengths: they are ready when a block
+   * begins, and neither the time nor the kind of a request reveals which is worn next. Somebody who is
+   * measured again before stepping into the body gets another one.
    */
   #prepare(state: HeadsetState): void {
-    if (this.#isPreparing) return;
-    this.#isPreparing = true;
-    const { telemetry, calibrator, prepareBodies, onFailure } = this.#parts;
-    const statureM = state.participant.stature_m ?? calibrator.statureM ?? USUAL_STATURE_M;
-    prepareBodies(statureM, telemetry.welcome.bodies ?? []).then((bodies) => {
+    const measures = this.calibrating.measures(state);
+    if (measures === null) return;
+    if (this.#madeFor !== null) {
+      const isMaking = this.#bodies === null;
+      if (isMaking || this.#hasReportedBody || !isOther(measures, this.#madeFor)) return;
+      this.#bodies?.dispose();
+      this.#bodies = null;
+      this.#hasMoved = false;
+    }
+    this.#madeFor = measures;
+    const { telemetry, prepareBodies, onFailure } = this.#parts;
+    prepareBodies(measures, telemetry.welcome.bodies ?? []).then((bodies) => {
       this.#bodies = bodies;
     }, onFailure);
   }
@@ -293,7 +363,8 @@ export class Headset {
     if (state.status === "completed" || state.status === "aborted") return "over";
     if (state.status === "withdrawn") return "over";
     if (state.materialised || this.#hasReportedBody) return "acting";
-    return state.step_kind === "materialise" ? "stepping_in" : "standby";
+    if (state.step_kind !== "materialise") return "standby";
+    return this.calibrating.isDue ? "calibrating" : "stepping_in";
   }
 }
 
@@ -310,11 +381,12 @@ class ShownPose {
   }
 }
 
-const placesOf = (parts: TrackedFrame["parts"]): Goals => ({
-  Hips: parts.Hips.place,
-  Head: parts.Head.place,
-  LeftHand: parts.LeftHand.place,
-  RightHand: parts.RightHand.place,
-  LeftLowerLeg: parts.LeftLowerLeg.place,
-  RightLowerLeg: parts.RightLowerLeg.place,
-});
+/** Whether a body for these lengths differs from one for those by more than can be seen. */
+function isOther(one: Measures, other: Measures): boolean {
+  const names = new Set([...Object.keys(one.segmentsM), ...Object.keys(other.segmentsM)]);
+  const areOther = (a = 0, b = 0) => Math.abs(a - b) > OTHER_BODY_M;
+  return (
+    areOther(one.statureM, other.statureM) ||
+    [...names].some((name) => areOther(one.segmentsM[name], other.segmentsM[name]))
+  );
+}

@@ -1,25 +1,18 @@
 /** What the headset's loop needs of the parts it puts together, and no more. */
-import type { Goals } from "@shared/avatar/goals";
 import type { Bodies, BodiesFrame } from "../bodies/bodies";
+import type { CalibrationPrompt, Measures } from "../calibration";
 import type { TimedRun } from "../tasks";
 import type { HeadsetState } from "../telemetry";
 import type { TrackedFrame } from "../tracking/tracked";
 
-/** Turns poses of devices into those of the joints that they are worn on. */
-export interface Calibrator {
-  /** The participant's stature, if it was measured. */
-  readonly statureM: number | null;
-  goals(tracked: TrackedFrame): Goals;
-}
-
 /** Prepares the bodies of a session: that of the configuration, and those with a name. */
-export type PrepareBodies = (statureM: number, named: readonly string[]) => Promise<Bodies>;
+export type PrepareBodies = (measures: Measures, named: readonly string[]) => Promise<Bodies>;
 
 /**
- * Where the participant is in the visit: `standby` between steps, `stepping_in` while the
- * transparent figure waits, `acting` in the body, `over` after the end.
+ * Where the participant is in the visit: `standby` between steps, `calibrating` before there is a
+ * body, `stepping_in` while the transparent figure waits, `acting` in the body, `over` after the end.
  */
-export type Place = "standby" | "stepping_in" | "acting" | "over";
+export type Place = "standby" | "calibrating" | "stepping_in" | "acting" | "over";
 
 /** What is shown in one frame. */
 export interface View {
@@ -33,8 +26,18 @@ export interface View {
   readonly run: TimedRun | null;
   /** The avatar stands still; the view never does. */
   readonly isFrozen: boolean;
-  /** The room is hidden: the participant is in the pause room, or between two places. */
-  readonly isCurtainDrawn: boolean;
+  /** The calibration that is under way, before the body or in it; null otherwise. */
+  readonly calibration: CalibrationPrompt | null;
+  readonly cover: Cover;
+}
+
+/** How the room is hidden: not, within 200 ms, or at once because it changes in this frame. */
+export type Cover = "none" | "fade" | "cut";
+
+/** What the participant is told and asked beside the scene, and how they stop. */
+export interface Guide {
+  /** Draw what is to be read in this frame; returns how the room is hidden. */
+  follow(moment: Omit<View, "cover" | "bodies" | "isFrozen">): Cover;
 }
 
 export interface Scenery {

@@ -1,9 +1,9 @@
 /** What the participant sees in each place of the visit: the world, told what is to be seen. */
 import type { Limb, TimedRun } from "../tasks";
 import { BoxRun, currentGoal, displayedNumbers, surfaceColours } from "../tasks";
-import type { TrackedFrame } from "../tracking/tracked";
+import type { TrackedFrame, TrackingDevice } from "../tracking/tracked";
 import type { Device, TaskShown, Visible, World } from "../world";
-import type { Place, Scenery, View } from "./ports";
+import type { Scenery, View } from "./ports";
 
 const NO_SETUPS: readonly Limb[] = [];
 const NO_DEVICES: readonly Device[] = [];
@@ -23,26 +23,42 @@ export class WorldScenery implements Scenery {
   show(view: View): void {
     const { timeS, place, tracked, bodies, run } = view;
     const isTask = run instanceof BoxRun;
+    const visible = this.#visible(view);
+    const { stature_m: statedM } = view.state.participant;
+    // Nothing is measured yet: the figure has the stature that was stated.
+    if (visible.figure && place !== "stepping_in" && bodies === null && statedM !== null) {
+      this.#world.wear(null, statedM);
+    }
     this.#world.show({
       timeS,
       eyes: tracked.eyes,
       bodies,
-      visible: this.#visible(place, run, bodies !== null),
+      visible,
       devices: place === "acting" ? NO_DEVICES : devicesOf(tracked),
       task: isTask ? this.#taskOf(run) : null,
       remainingS: run === null ? null : remainingS(run, timeS),
       completed: isTask ? run.completed : null,
       isFrozen: view.isFrozen,
-      isCurtainDrawn: view.isCurtainDrawn,
+      isCurtainDrawn: view.cover !== "none",
+      isCurtainAtOnce: view.cover === "cut",
     });
   }
 
-  #visible(place: Place, run: TimedRun | null, hasBodies: boolean): Visible {
-    const isActing = place === "acting" && hasBodies;
+  #visible({ place, run, bodies, calibration, state }: View): Visible {
+    const isActing = place === "acting" && bodies !== null;
     return {
-      local: false,
+      // In free movement people compare their own body with the one that they act with. In the
+      // mirror check before stepping in they see what the tracking says, not the study's avatar.
+      local:
+        (isActing && run?.order.limb === null) ||
+        (place === "calibrating" && calibration?.step === "mirror" && bodies !== null),
       remote: isActing,
-      figure: place === "stepping_in",
+      // Where the figure stands one is asked to stand before the measuring poses, too; and it is
+      // what the height is compared with.
+      figure:
+        place === "stepping_in" ||
+        (place === "calibrating" && calibration?.step === "square") ||
+        (place === "standby" && state.step_kind === "height"),
       devices: !isActing,
       setups: isActing ? this.#setups(run) : NO_SETUPS,
     };
@@ -76,13 +92,17 @@ function remainingS(run: TimedRun, timeS: number): number {
   return Math.max(0, run.order.duration_s - run.activeS(timeS));
 }
 
-function devicesOf({ parts, hands }: TrackedFrame): readonly Device[] {
+/** What is drawn for what tracks a part; joints of a body look like trackers. */
+const LOOKS: Partial<Record<TrackingDevice, Device["kind"]>> = {
+  controller: "controller",
+  hand: "hand",
+};
+
+function devicesOf({ parts }: TrackedFrame): readonly Device[] {
   const devices: Device[] = [];
-  for (const [part, { place }] of Object.entries(parts)) {
-    if (place === null || part === "Head") continue;
-    const hand = part === "LeftHand" ? hands.left : part === "RightHand" ? hands.right : null;
-    const kind = hand === null ? "tracker" : hand.holdsController ? "controller" : "hand";
-    devices.push({ kind, place });
+  for (const [part, { place, device }] of Object.entries(parts)) {
+    if (place === null || device === null || part === "Head") continue;
+    devices.push({ kind: LOOKS[device] ?? "tracker", place });
   }
   return devices;
 }

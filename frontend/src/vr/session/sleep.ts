@@ -27,6 +27,11 @@ export class SleepWatch {
     return this.#lastS;
   }
 
+  /** Whether frames go on with a head that nobody measures. */
+  get isStill(): boolean {
+    return this.#isStill;
+  }
+
   /** Note a frame; returns what it reveals, and `still` only once. `eyes`: null if not measured. */
   frame(timeS: number, eyes: Place | null): Sleep | null {
     const lastS = this.#lastS;

@@ -12,7 +12,8 @@ import {
   VALUES_PER_FRAME,
   type Welcome,
 } from "../telemetry";
-import type { TrackedFrame, TrackingSource } from "../tracking/tracked";
+import type { KnownBody, TrackedFrame, TrackingSource } from "../tracking/tracked";
+import type { Keep } from "./calibrating";
 
 export const ORDER: PhaseOrder = { ...PREPARING, duration_s: 2, freeze_s: 0.5 };
 
@@ -76,6 +77,23 @@ export class FakeTelemetry {
 
   get reports(): readonly ReportBody[] {
     return this.sent.flatMap((one) => (one.what === "report" ? [one.body] : []));
+  }
+}
+
+/** A place that keeps texts, as `localStorage` does. */
+export class Kept implements Keep {
+  readonly #texts = new Map<string, string>();
+
+  getItem(key: string): string | null {
+    return this.#texts.get(key) ?? null;
+  }
+
+  setItem(key: string, text: string): void {
+    this.#texts.set(key, text);
+  }
+
+  removeItem(key: string): void {
+    this.#texts.delete(key);
   }
 }
 
@@ -151,18 +169,21 @@ const PART = {
   device: "controller",
 } as const;
 
-/** A source whose head moves all the time, and whose grips a test presses. */
+/** A source whose head moves all the time unless a test holds it still, and whose grips a test presses. */
 export class FakeSource implements TrackingSource {
   readonly kind = "controllers";
   readonly measures = new Set(["Head", "LeftHand", "RightHand"] as const);
-  readonly knownBody = null;
   areGripsPressed = false;
+  /** x of a head that does not move. */
+  headStillAtM: number | null = null;
+
+  constructor(readonly knownBody: KnownBody | null = null) {}
 
   read(timeS: number): TrackedFrame {
     const hand = { ...HAND, isSqueezing: this.areGripsPressed };
     return {
       timeS,
-      eyes: { positionM: [timeS, 1.6, 0], rotation: [1, 0, 0, 0] },
+      eyes: { positionM: [this.headStillAtM ?? timeS, 1.6, 0], rotation: [1, 0, 0, 0] },
       parts: {
         Hips: { place: null, state: "lost", device: null },
         Head: PART,

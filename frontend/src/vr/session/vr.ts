@@ -5,16 +5,25 @@
  * of times; the bodies, the phase and its record stay where they were, paused.
  */
 import { PerspectiveCamera, WebGLRenderer } from "three";
-import { type BodiesInWorker, type BodiesSetup, openBodiesInWorker } from "../bodies";
+import {
+  type BodiesInWorker,
+  type BodiesSetup,
+  fetchBodiesBeforehand,
+  openBodiesInWorker,
+} from "../bodies";
+import type { Measures } from "../calibration";
 import { layoutsOf } from "../tasks";
 import type { TelemetryClient } from "../telemetry";
-import { type TrackedFrame, type TrackingSource, WebXrTracking } from "../tracking";
+import { Boundary, type TrackedFrame, type TrackingSource, WebXrTracking } from "../tracking";
+import { armStretchOf } from "../tracking/skeleton";
 import { paletteOf, STANDARD, World } from "../world";
 import { loadModel, requestAvatars } from "./avatars";
 import { Headset } from "./headset";
+import { drawIn, FRAME_RATE_HZ, requestImmersive } from "./immersive";
 import type { Granted, Inspection } from "./inspection";
+import { deskOf } from "./panels/desk";
+import { VisitPanels } from "./panels/visitPanels";
 import { WorldScenery } from "./scenery";
-import { UsualOffsets } from "./usualOffsets";
 
 export interface VrParts {
   readonly telemetry: TelemetryClient;
@@ -26,17 +35,8 @@ export interface VrParts {
   readonly onFailure: (error: unknown) => void;
 }
 
-/** 90 Hz is what the recording and the study's bodies are made for. */
-const FRAME_RATE_HZ = 90;
-/** Browsers may never answer a request for a frame rate. */
-const PATIENCE_MS = 2000;
-/** three's own default is the most, which blurs text and hands at the edge of the view. */
-const FOVEATION = 0.3;
 const NEAR_M = 0.05;
 const FAR_M = 50;
-
-const REQUIRED = ["local-floor"] as const;
-const OPTIONAL = ["hand-tracking", "bounded-floor", "body-tracking", "tracked-sources"] as const;
 
 export class Vr {
   readonly #parts: VrParts;
@@ -44,14 +44,17 @@ export class Vr {
   readonly #camera = new PerspectiveCamera(70, 1, NEAR_M, FAR_M);
   readonly #world: World;
   readonly #headset: Headset;
+  readonly #panels: VisitPanels;
   readonly #tracking: WebXrTracking;
-  readonly #calibrator = new UsualOffsets();
   #bodies: BodiesInWorker | null = null;
   #screen: OnScreen | null = null;
   #session: XRSession | null = null;
   #granted: Granted | null = null;
+  #boundary: Boundary | null = null;
+  #guardedFrame = 0;
   #frames = 0;
   #statureM = 0;
+  #armStretch = 1;
   #isRendering = true;
 
   constructor(parts: VrParts) {
@@ -65,20 +68,38 @@ export class Vr {
     const palette = appearance === undefined ? STANDARD : paletteOf(appearance);
     this.#world = new World({ layouts, palette, language });
     this.#tracking = new WebXrTracking({
-      onSpace: (space) => this.#renderer.xr.setReferenceSpace(space),
-      onReset: () => this.#headset.stop("recentred"),
+      onSpace: (space) => {
+        this.#renderer.xr.setReferenceSpace(space);
+        // Seen from elsewhere from one frame to the next.
+        this.#panels.cut();
+        this.#panels.recentre();
+      },
+      onReset: (isKept) => this.#headset.recentred(isKept),
+    });
+    this.#panels = new VisitPanels({
+      telemetry,
+      world: this.#world,
+      desk: deskOf(parts.token),
+      onCall: (what) => this.#headset.call(what),
+      onCalibration: (target) => this.#headset.calibrating.press(target),
+      onPressed: (side) => this.#pulse(side),
+      isWorn: () => this.#screen === null,
     });
     this.#headset = new Headset({
       telemetry,
+      guide: this.#panels,
       source: this.#tracking,
-      calibrator: this.#calibrator,
+      keep: localStorage,
+      onSquare: (worldFromSquare) => this.#tracking.moveSquare(worldFromSquare),
       scenery: new WorldScenery(this.#world, [...layouts.keys()]),
-      prepareBodies: (statureM, named) => this.#prepareBodies(statureM, named),
-      onBodyWorn: (body) => this.#world.wear(body, this.#statureM),
+      prepareBodies: (measures, named) => this.#prepareBodies(measures, named),
+      onBodyWorn: (body) => this.#wear(body),
       withFingers,
       onFailure,
     });
     globalThis.reembody = this.#inspection();
+    // The physics is the largest part of the page: it comes beside standby and calibration.
+    void fetchBodiesBeforehand().catch(() => undefined);
   }
 
   get isShown(): boolean {
@@ -87,33 +108,20 @@ export class Vr {
 
   /** Enter VR; call it in the handler of a click, in which browsers allow it. */
   async enter(): Promise<void> {
-    const xr = navigator.xr;
-    if (xr === undefined) throw new Error("This browser has no WebXR.");
     // Also only allowed in the handler of a click.
     this.#world.sounds.resume();
-    const session = await xr.requestSession("immersive-vr", {
-      requiredFeatures: [...REQUIRED],
-      optionalFeatures: [...OPTIONAL],
-    });
+    const session = await requestImmersive();
     this.#session = session;
     session.addEventListener("end", () => this.#ended(session));
-    session.addEventListener("visibilitychange", () => {
-      if (session.visibilityState !== "visible") this.#headset.leave("asleep");
-    });
-    await requestFrameRate(session);
-    // Before the session is set: later it would start the window's loop beside the session's.
-    this.#renderer.setAnimationLoop((timeMs, frame) => {
-      if (frame !== undefined) this.#frame(timeMs, frame);
-    });
-    await this.#renderer.xr.setSession(session);
-    this.#renderer.xr.setFoveation(FOVEATION);
-    this.#granted = {
-      features: session.enabledFeatures ?? [],
-      frameRateHz: session.frameRate ?? null,
-      foveation: this.#renderer.xr.getFoveation() ?? null,
-    };
+    session.addEventListener("visibilitychange", () => this.#see(session));
+    this.#see(session);
+    this.#granted = await drawIn(this.#renderer, session, (timeMs, frame) =>
+      this.#frame(timeMs, frame),
+    );
     const space = this.#renderer.xr.getReferenceSpace();
     if (space !== null) this.#tracking.begin(session, space);
+    this.#boundary = await Boundary.of(session);
+    this.#guardedFrame = 0;
   }
 
   /** Show the study on this screen instead of in VR, moved by a source of its own. */
@@ -131,6 +139,7 @@ export class Vr {
   dispose(): void {
     void this.#session?.end().catch(() => undefined);
     this.#headset.dispose();
+    this.#panels.dispose();
     this.#world.dispose();
     this.#renderer.setAnimationLoop(null);
     this.#renderer.domElement.remove();
@@ -139,10 +148,28 @@ export class Vr {
     globalThis.reembody = undefined;
   }
 
+  /** A short pulse of the controller that has pressed something, where it can. */
+  #pulse(side: "left" | "right" | null): void {
+    for (const { handedness, gamepad } of this.#session?.inputSources ?? []) {
+      if (handedness !== side) continue;
+      void gamepad?.hapticActuators?.[0]?.pulse?.(0.4, 20).catch(() => undefined);
+    }
+  }
+
   #frame(timeMs: number, frame: XRFrame): void {
+    this.#guard(frame);
     this.#headset.frame(timeMs / 1000, frame);
     this.#frames++;
     if (this.#isRendering) this.#renderer.render(this.#world.scene, this.#camera);
+  }
+
+  /** Look at the guarded space once a second: it may move with the square, or be drawn anew. */
+  #guard(frame: XRFrame): void {
+    const { room } = this.#tracking;
+    if (this.#boundary === null || room === null) return;
+    const isNew = this.#guardedFrame === 0;
+    if (this.#guardedFrame++ % FRAME_RATE_HZ !== 0) return;
+    this.#panels.guard(this.#boundary.corners(frame, room.space), isNew);
   }
 
   #frameOnScreen(timeMs: number, { host, source }: OnScreen): void {
@@ -178,19 +205,34 @@ export class Vr {
     this.#parts.onEnd();
   }
 
+  /** The participant sees the scene, or the device's own menu before it, or nothing of it. */
+  #see(session: XRSession): void {
+    if (this.#session !== session) return;
+    // "visible-blurred" is the device's menu.
+    if (session.visibilityState === "visible") this.#headset.lookAgain();
+    else this.#headset.leave("asleep");
+  }
+
+  #wear(body: string | null): void {
+    this.#world.wear(body, this.#statureM, this.#armStretch);
+  }
+
   /** The bodies for this participant, and beside them the models that they are drawn with. */
-  async #prepareBodies(statureM: number, named: readonly string[]): Promise<BodiesInWorker> {
+  async #prepareBodies(measures: Measures, named: readonly string[]): Promise<BodiesInWorker> {
     const { telemetry, token, withFingers } = this.#parts;
+    const { statureM, segmentsM } = measures;
+    const { upper_arm: upperArmM = 0, forearm: forearmM = 0 } = segmentsM;
+    const armM = upperArmM + forearmM;
     this.#statureM = statureM;
-    this.#calibrator.scaleTo(statureM);
-    this.#world.wear(null, statureM);
+    this.#armStretch = armM > 0 ? armStretchOf(armM, statureM) : 1;
+    this.#wear(null);
     if (telemetry.welcome.avatar !== "physics") {
       const surfaces = [...layoutsOf(telemetry.welcome.tasks).values()].flatMap(
         (layout) => layout.surfaces,
       );
-      return this.#open({ avatar: "delayed_copy", statureM, surfaces, withFingers });
+      return this.#open({ avatar: "delayed_copy", statureM, segmentsM, surfaces, withFingers });
     }
-    const avatars = await requestAvatars(token, statureM, named);
+    const avatars = await requestAvatars(token, measures, named);
     for (const [name, { humanoid }] of avatars) {
       // Drawn as a plain body until its model is there; a study is not held up by a picture.
       if (humanoid == null) continue;
@@ -215,6 +257,7 @@ export class Vr {
     const vr = this;
     const { telemetry } = this.#parts;
     return {
+      epoch: telemetry.epoch,
       get state() {
         return telemetry.state;
       },
@@ -227,11 +270,26 @@ export class Vr {
       get run() {
         return vr.#headset.run;
       },
+      get calibration() {
+        return vr.#headset.calibrating.prompt;
+      },
       get granted() {
         return vr.#granted;
       },
+      get computed() {
+        return vr.#headset.computed;
+      },
+      get skippedGaps() {
+        return vr.#bodies?.skippedGaps ?? 0;
+      },
+      get touchingParts() {
+        return vr.#bodies?.touchingParts ?? [];
+      },
       get frames() {
         return vr.#frames;
+      },
+      get recorded() {
+        return vr.#headset.recorded;
       },
       get isIdle() {
         return vr.#bodies?.isIdle ?? true;
@@ -241,6 +299,9 @@ export class Vr {
       },
       set isRendering(isRendering: boolean) {
         vr.#isRendering = isRendering;
+      },
+      get panel() {
+        return { ...vr.#panels.seen, targetsM: vr.#panels.targetsM };
       },
       get drawn() {
         const { calls, triangles } = vr.#renderer.info.render;
@@ -285,15 +346,4 @@ class Watched implements TrackingSource {
   dispose(): void {
     this.#of.dispose();
   }
-}
-
-/** Ask for the study's frame rate where the device can choose; it may still draw at another. */
-async function requestFrameRate(session: XRSession): Promise<void> {
-  if (session.updateTargetFrameRate === undefined) return;
-  if (!session.supportedFrameRates?.includes(FRAME_RATE_HZ)) return;
-  const patience = new Promise<void>((resolve) => {
-    setTimeout(resolve, PATIENCE_MS);
-  });
-  const asked = session.updateTargetFrameRate(FRAME_RATE_HZ).catch(() => undefined);
-  await Promise.race([asked, patience]);
 }

@@ -28,7 +28,7 @@ export class CapsuleContacts implements Touches {
   readonly #partCount: number;
   readonly #reach = new Float64Array(6);
 
-  constructor(surfaces: readonly Surface[], partCount: number) {
+  constructor(surfaces: readonly Pick<Surface, "centerM" | "halfSizeM">[], partCount: number) {
     this.#partCount = partCount;
     this.touched = new Uint8Array(surfaces.length * partCount);
     this.near = new Uint8Array(surfaces.length * partCount);
@@ -47,7 +47,8 @@ export class CapsuleContacts implements Touches {
   }
 
   /**
-   * Find the touches of one frame, in `touched` and `near`.
+   * Find the touches of one frame, in `touched` and `near`; a part whose place is unknown (NaN), such
+   * as a hand that is not tracked, touches nothing.
    *
    * `segmentsM`: start and end of each part, six values a part; `radiiM`: one a part. World frame.
    */

@@ -3,11 +3,14 @@ export type { Level, Status, TelemetryClient, TelemetryOptions } from "./client"
 export type { Abilities, Notice } from "./connection/connection";
 export { type Failure, TelemetryError } from "./failure";
 export { deleteJournal, type LeftJournal, leftJournals } from "./journal/indexedDb";
+export { TrialJournal } from "./journal/trial";
 export { DEFAULT_LIMITS, type Limits } from "./limits";
 export { openTelemetry, type Surroundings } from "./open";
 export { flushWhenLeft, openTelemetryInWorker } from "./page";
+export { SUBPROTOCOL } from "./wire/basis";
 export {
   ACTIVE,
+  encodeBatch,
   FINGER_VALUES_PER_FRAME,
   type Frames,
   type StreamName,
@@ -22,3 +25,4 @@ export type {
   PhaseOrder,
   Welcome,
 } from "./wire/fromServer";
+export { serverMessage } from "./wire/fromServer";

@@ -12,14 +12,19 @@ async function killed(victim: DirectClient): Promise<void> {
   bed.server.acknowledges = true;
 }
 
+/** What a run leaves on this disk that produced five reports while the server was away. */
+async function interrupted(disk: MemoryBlocks): Promise<void> {
+  const first = await openedClient(bed.server, disk);
+  bed.server.goesDown();
+  await produce(first, 5);
+  await killed(first);
+  bed.server.isUp = true;
+}
+
 describe("a page that restarts", () => {
   it("delivers the previous run's messages under their own epoch, then its own", async () => {
     const disk = new MemoryBlocks();
-    const first = await openedClient(bed.server, disk);
-    bed.server.goesDown();
-    await produce(first, 5);
-    await killed(first);
-    bed.server.isUp = true;
+    await interrupted(disk);
     const second = await bed.opened(disk);
     expect(second.epoch).toBe(2);
     expect(second.settled).toBe(false);
@@ -35,11 +40,7 @@ describe("a page that restarts", () => {
 
   it("announces how much each run had produced, right after the welcome", async () => {
     const disk = new MemoryBlocks();
-    const first = await openedClient(bed.server, disk);
-    bed.server.goesDown();
-    await produce(first, 5);
-    await killed(first);
-    bed.server.isUp = true;
+    await interrupted(disk);
     bed.server.received.length = 0;
     const second = await bed.opened(disk, { producedEveryS: 0.2 });
     await new Promise((resolve) => setTimeout(resolve, 10));

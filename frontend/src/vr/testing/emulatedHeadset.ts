@@ -10,7 +10,14 @@
  * Install it before three is imported.
  */
 import type { Place } from "@shared/avatar/hips";
-import type { Quaternion, Vector } from "@shared/rotations";
+import {
+  minus,
+  multiply,
+  normalised,
+  type Quaternion,
+  rotate,
+  type Vector,
+} from "@shared/rotations";
 import {
   metaQuest3,
   P_DEVICE,
@@ -25,7 +32,17 @@ import {
   XRSession,
   XRSpace,
 } from "iwer";
-import { AT_ORIGIN, composed, inverted, placeAt, writeMatrix } from "../tracking/places";
+import {
+  AT_ORIGIN,
+  composed,
+  inverted,
+  placeAt,
+  rotationTo,
+  writeMatrix,
+} from "../tracking/places";
+import { unit } from "../tracking/script/movements";
+
+const FORWARDS: Vector = [0, 0, -1];
 
 export type Side = "left" | "right";
 
@@ -55,6 +72,7 @@ export class EmulatedHeadset {
   };
   private readonly lost = new Set<XRSpace>();
   private isBodySeen = false;
+  private bounds: readonly DOMPointReadOnly[] | undefined;
   private readonly restored: (() => void)[] = [];
 
   constructor(options: EmulatedOptions = {}) {
@@ -79,6 +97,7 @@ export class EmulatedHeadset {
     this.installTrackedSources();
     this.installLoss();
     this.installOffsets();
+    this.installBounds();
     for (const side of ["left", "right"] as const) this.installHand(side);
   }
 
@@ -96,6 +115,18 @@ export class EmulatedHeadset {
     const controller = this.controller(side);
     const ray = composed(grip, this.rayFromGrip(side));
     put(controller.position, controller.quaternion, ray.positionM, ray.rotation);
+  }
+
+  /** The grip, turned until the controller's ray, which is tilted against it, meets a point. */
+  aimed(side: Side, grip: Place, pointM: Vector): Place {
+    let turned = grip;
+    for (let again = 0; again < 3; again++) {
+      const ray = composed(turned, this.rayFromGrip(side));
+      const way = unit(minus(pointM, ray.positionM), FORWARDS);
+      const by = rotationTo(rotate(ray.rotation, FORWARDS), way);
+      turned = { ...turned, rotation: normalised(multiply(by, turned.rotation)) };
+    }
+    return turned;
   }
 
   /** grip_from_ray of a controller: where its ray starts, along -z. */
@@ -128,6 +159,13 @@ export class EmulatedHeadset {
     const wrist = joints.get("wrist") ?? AT_ORIGIN;
     put(hand.position, hand.quaternion, wrist.positionM, wrist.rotation);
     this.joints[side] = joints;
+  }
+
+  /** Place a hand, in the device's own shape, by its ray, which starts at the wrist. */
+  setHandRay(side: Side, ray: Place): void {
+    const hand = this.hand(side);
+    put(hand.position, hand.quaternion, ray.positionM, ray.rotation);
+    this.joints[side] = null;
   }
 
   /** Place a joint of the body by its name in the draft, or take it away. */
@@ -204,6 +242,23 @@ export class EmulatedHeadset {
   /** The system ends the session: the headset was taken off for too long, or its button pressed. */
   async endSession(): Promise<void> {
     await this.session?.end();
+  }
+
+  /**
+   * The space that the headset guards, by its corners on the floor of the room, metres; without a
+   * call the browser tells nothing about it. Call it before the session begins.
+   */
+  setBounds(cornersM: readonly (readonly [x: number, z: number])[]): void {
+    this.bounds = cornersM.map(([x, z]) => ({ x, y: 0, z, w: 1 }) as DOMPointReadOnly);
+  }
+
+  /** iwer's bounded spaces have no bounds. */
+  private installBounds(): void {
+    const read = () => this.bounds;
+    Object.defineProperty(XRReferenceSpace.prototype, "boundsGeometry", {
+      configurable: true,
+      get: read,
+    });
   }
 
   /** Give the page its own WebXR back. */

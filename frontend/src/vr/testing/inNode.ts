@@ -74,7 +74,7 @@ export async function sessionInNode(options: EmulatedOptions = {}): Promise<Sess
   try {
     const session = (await navigator.xr?.requestSession("immersive-vr", {
       requiredFeatures: ["local-floor"],
-      optionalFeatures: ["hand-tracking", "body-tracking", "tracked-sources"],
+      optionalFeatures: ["bounded-floor", "hand-tracking", "body-tracking", "tracked-sources"],
     })) as XRSession;
     const floor = await session.requestReferenceSpace("local-floor");
     const context = blindContext(element());

@@ -6,10 +6,9 @@
  * of its own, in which the square lies somewhere. Calibration has to find where.
  */
 import type { Place } from "@shared/avatar/hips";
-import { minus, multiply, normalised, rotate, type Vector } from "@shared/rotations";
-import { AT_ORIGIN, composed, rotationTo } from "../tracking/places";
+import type { Vector } from "@shared/rotations";
+import { AT_ORIGIN, composed } from "../tracking/places";
 import { type ScriptedPerson, WornDevices, type WornOptions } from "../tracking/script";
-import { unit } from "../tracking/script/movements";
 import type { EmulatedHeadset, Side } from "./emulatedHeadset";
 import type { VirtualClock } from "./virtualClock";
 
@@ -21,7 +20,6 @@ export interface WearerOptions extends WornOptions {
 }
 
 const SIDES = ["left", "right"] as const;
-const FORWARDS: Vector = [0, 0, -1];
 
 export class Wearer {
   private readonly devices: WornDevices;
@@ -84,16 +82,8 @@ export class Wearer {
     this.headset.setController(side, grip);
     const target = this.aims[side];
     if (target === null) return;
-    // The ray starts beside the grip and is tilted against it: turn the whole until it hits.
-    let turned = grip;
-    const aimed = this.inRoom({ positionM: target, rotation: [1, 0, 0, 0] }).positionM;
-    for (let again = 0; again < 3; again++) {
-      const ray = composed(turned, this.headset.rayFromGrip(side));
-      const way = unit(minus(aimed, ray.positionM), FORWARDS);
-      const by = rotationTo(rotate(ray.rotation, FORWARDS), way);
-      turned = { ...turned, rotation: normalised(multiply(by, turned.rotation)) };
-    }
-    this.headset.setController(side, turned);
+    const aimedM = this.inRoom({ positionM: target, rotation: [1, 0, 0, 0] }).positionM;
+    this.headset.setController(side, this.headset.aimed(side, grip, aimedM));
   }
 
   private press(side: Side): void {

@@ -22,6 +22,7 @@ export type {
   TrackingDevice,
   TrackingSource,
 } from "./tracked";
+export { Boundary } from "./webxr/boundary";
 export { Room, type RoomListener } from "./webxr/room";
 export { XR_WAYS, XrSource, type XrWay } from "./webxr/source";
 export { WebXrTracking } from "./webxr/tracking";

@@ -3,7 +3,6 @@ import type { Place } from "@shared/avatar/hips";
 import {
   fromAxes,
   length,
-  multiply,
   normalised,
   plus,
   type Quaternion,
@@ -18,11 +17,32 @@ const TINY = 1e-9;
 
 export const conjugate = ([w, x, y, z]: Quaternion): Quaternion => [w, -x, -y, -z];
 
-/** world_from_b, of world_from_a and a_from_b. */
-export const composed = (a: Place, b: Place): Place => ({
-  positionM: plus(a.positionM, rotate(a.rotation, b.positionM)),
-  rotation: normalised(multiply(a.rotation, b.rotation)),
-});
+/**
+ * world_from_b, of world_from_a and a_from_b: `plus(a, rotate(a, b))` and `normalised(multiply(a,
+ * b))`, written out because every tracked part takes it in every frame, and each step of it would
+ * leave an array behind.
+ */
+export function composed(a: Place, b: Place): Place {
+  const [aw, ax, ay, az] = a.rotation;
+  const [bw, bx, by, bz] = b.rotation;
+  const [vx, vy, vz] = b.positionM;
+  const cx = 2 * (ay * vz - az * vy);
+  const cy = 2 * (az * vx - ax * vz);
+  const cz = 2 * (ax * vy - ay * vx);
+  const w = aw * bw - ax * bx - ay * by - az * bz;
+  const x = aw * bx + ax * bw + ay * bz - az * by;
+  const y = aw * by - ax * bz + ay * bw + az * bx;
+  const z = aw * bz + ax * by - ay * bx + az * bw;
+  const scale = 1 / Math.sqrt(w * w + x * x + y * y + z * z);
+  return {
+    positionM: [
+      a.positionM[0] + (vx + aw * cx + ay * cz - az * cy),
+      a.positionM[1] + (vy + aw * cy + az * cx - ax * cz),
+      a.positionM[2] + (vz + aw * cz + ax * cy - ay * cx),
+    ],
+    rotation: [w * scale, x * scale, y * scale, z * scale],
+  };
+}
 
 export function inverted({ positionM, rotation }: Place): Place {
   const back = conjugate(rotation);

@@ -34,9 +34,9 @@ const RIGHT: Readonly<Record<string, Vector>> = {
   Toes: [0.05, 0.014, -0.072],
 };
 const SHOULDER = 0.129;
-const UPPER_ARM = 0.186;
-const FOREARM = 0.146;
-const HAND = 0.108;
+export const UPPER_ARM = 0.186;
+export const FOREARM = 0.146;
+export const HAND = 0.108;
 const LOWEST_M = 0.5;
 const HIGHEST_M = 2.6;
 
@@ -60,8 +60,13 @@ export interface Skeleton {
 export const usualSpanM = (statureM: number): number =>
   2 * (SHOULDER + UPPER_ARM + FOREARM + HAND) * statureM;
 
+/** The upper arm and forearm of a body with these lengths, as multiples of the usual ones. */
+export const armStretchOf = (armM: number, statureM: number): number =>
+  armM / ((UPPER_ARM + FOREARM) * statureM);
+
 /**
- * The skeleton of a person of this stature; another span makes the arms longer or shorter.
+ * The skeleton of a person of this stature; another span makes upper arms and forearms longer or
+ * shorter. Hands are of the usual length: of all bones of the arm it varies least with the span.
  *
  * Throws RangeError for a stature outside 0.5 to 2.6 m, or a span that leaves no arms.
  */
@@ -71,8 +76,7 @@ export function skeletonOf(statureM: number, spanM = usualSpanM(statureM)): Skel
       `A stature of ${statureM} m is outside ${LOWEST_M} to ${HIGHEST_M} m: give metres.`,
     );
   }
-  const arm = UPPER_ARM + FOREARM + HAND;
-  const stretch = (spanM / 2 / statureM - SHOULDER) / arm;
+  const stretch = armStretchOf(spanM / 2 - (SHOULDER + HAND) * statureM, statureM);
   if (!(stretch > 0.3 && stretch < 3)) {
     throw new RangeError(`A span of ${spanM} m does not fit a stature of ${statureM} m.`);
   }
@@ -87,7 +91,7 @@ export function skeletonOf(statureM: number, spanM = usualSpanM(statureM)): Skel
     }),
     upperArmM: lengthM(UPPER_ARM),
     forearmM: lengthM(FOREARM),
-    handM: lengthM(HAND),
+    handM: HAND * statureM,
     thighM: 0.245 * statureM,
     shankM: 0.246 * statureM,
     ankleHeightM: 0.039 * statureM,

@@ -31,8 +31,9 @@ const IDENTITY: Quaternion = [1, 0, 0, 0];
 interface Memory {
   /** Where the joint was shown last; null before it was seen, or long after it was lost. */
   shown: Place | null;
-  /** The same beside the head, for a hand that is lost. */
+  /** The head that a hand was last seen beside, and where the hand was then. */
   besideHead: Place | null;
+  seen: Place | null;
   device: TrackingDevice | null;
   lostSinceS: number | null;
   fadeFromS: number;
@@ -45,6 +46,7 @@ const HANDS: ReadonlySet<GoalPart> = new Set(["LeftHand", "RightHand"]);
 const memory = (): Memory => ({
   shown: null,
   besideHead: null,
+  seen: null,
   device: null,
   lostSinceS: null,
   fadeFromS: Number.NEGATIVE_INFINITY,
@@ -74,7 +76,8 @@ export class SteadyGoals {
       this.goals[part] = next;
       one.shown = next;
       if (HANDS.has(part) && next !== null && goal !== null && head !== null) {
-        one.besideHead = composed(inverted(levelled(head)), next);
+        one.besideHead = head;
+        one.seen = next;
       }
     }
     this.isRestarted = false;
@@ -97,8 +100,9 @@ export class SteadyGoals {
   private held(one: Memory, part: GoalPart, head: Place | null, timeS: number): Place | null {
     one.lostSinceS ??= timeS;
     if (timeS - one.lostSinceS > HOLD_S) return null;
-    if (HANDS.has(part) && one.besideHead !== null && head !== null) {
-      return composed(levelled(head), one.besideHead);
+    if (HANDS.has(part) && one.besideHead !== null && one.seen !== null && head !== null) {
+      const headFromHand = composed(inverted(levelled(one.besideHead)), one.seen);
+      return composed(levelled(head), headFromHand);
     }
     return one.shown;
   }

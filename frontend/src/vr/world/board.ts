@@ -51,8 +51,10 @@ export class Board {
   readonly mesh: Mesh<BufferGeometry, MeshBasicMaterial>;
   readonly #uvs: Float32BufferAttribute;
   #shown = "";
+  #words: BoardWords;
 
   constructor(mirror: Mirror, words: BoardWords) {
+    this.#words = words;
     const geometry = new BufferGeometry();
     const quads = LABELS + TIME_GLYPHS + COUNT_GLYPHS;
     this.#uvs = new Float32BufferAttribute(new Float32Array(8 * quads), 2);
@@ -69,6 +71,14 @@ export class Board {
     this.mesh = new Mesh(geometry, material);
     this.mesh.matrixAutoUpdate = false;
     this.mesh.visible = false;
+  }
+
+  /** Other words from now on; nothing happens if they are the same. */
+  speak(words: BoardWords): void {
+    if (words.timeLeft === this.#words.timeLeft) return;
+    this.#words = words;
+    this.mesh.material.map?.dispose();
+    this.mesh.material.map = texture(words);
   }
 
   /** Seconds are counted down as people do: 0:01 lasts until there is no time left. */

@@ -22,7 +22,7 @@ import {
   Vector3,
 } from "three";
 import type { Mirror } from "./mirror";
-import { POSE, UNIT_SKELETON, WHOLE_VALUES, writePose } from "./skeleton";
+import { POSE, UNIT_SKELETON, unitSkeleton, WHOLE_VALUES, writePose } from "./skeleton";
 
 /** How a body looks. */
 export type Look = "own" | "transparent";
@@ -207,10 +207,11 @@ export class PlainBody implements Body3d {
   readonly #mesh: InstancedMesh<CapsuleGeometry, MeshLambertMaterial>;
   #isSeenFromWithin = false;
 
-  constructor(statureM: number, look: Look, mirror: Mirror | null) {
+  constructor(statureM: number, look: Look, mirror: Mirror | null, armStretch = 1) {
     this.#statureM = statureM;
     this.#mirror = mirror;
-    this.parts = new Parts({ ...UNIT_SKELETON, nodes: [], part_from_node: [] }, statureM, POSE);
+    const skeleton = unitSkeleton(armStretch);
+    this.parts = new Parts({ ...skeleton, nodes: [], part_from_node: [] }, statureM, POSE);
     this.hipsHeightM = statureM * (UNIT_SKELETON.joints_m[0]?.[1] ?? 0);
     this.#limbs = limbs();
     // A capsule's double is a capsule: both are instances of one.

@@ -66,6 +66,29 @@ export function boundaryProblem(
   return inside && !dents ? null : "too_small";
 }
 
+/** How far a point is inside the boundary's edge; negative outside, metres. */
+export function edgeDistanceM(point: FloorPoint, bounds: readonly FloorPoint[]): number {
+  let nearest = Number.POSITIVE_INFINITY;
+  for (let at = 0; at < bounds.length; at++) {
+    const a = bounds[at];
+    const b = bounds[(at + 1) % bounds.length];
+    if (a === undefined || b === undefined) continue;
+    const [dx, dz] = [b.x - a.x, b.z - a.z];
+    const along = ((point.x - a.x) * dx + (point.z - a.z) * dz) / (dx * dx + dz * dz || 1);
+    const share = Math.min(1, Math.max(0, along));
+    const away = Math.hypot(point.x - a.x - share * dx, point.z - a.z - share * dz);
+    nearest = Math.min(nearest, away);
+  }
+  return isInside(point, bounds) ? nearest : -nearest;
+}
+
+/** Width and depth of the smallest rectangle around the boundary; zero without one, metres. */
+export function sizeOf(bounds: readonly FloorPoint[] | null): readonly [number, number] {
+  if (bounds === null || bounds.length === 0) return [0, 0];
+  const extent = (values: readonly number[]) => Math.max(...values) - Math.min(...values);
+  return [extent(bounds.map(({ x }) => x)), extent(bounds.map(({ z }) => z))];
+}
+
 /** Even-odd rule. */
 function isInside({ x, z }: FloorPoint, polygon: readonly FloorPoint[]): boolean {
   let isOdd = false;

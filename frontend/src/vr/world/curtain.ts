@@ -44,12 +44,15 @@ export class Curtain {
     return this.#share;
   }
 
-  /** Move towards hiding everything or nothing; at least `least` is hidden. */
-  show(timeS: number, isDrawn: boolean, least = 0): void {
+  /**
+   * Move towards hiding everything or nothing; at least `least` is hidden. `isAtOnce`: hide all of
+   * it in this frame.
+   */
+  show(timeS: number, isDrawn: boolean, least = 0, isAtOnce = false): void {
     const passed = Number.isNaN(this.#timeS) ? FADE_S : Math.max(0, timeS - this.#timeS);
     this.#timeS = timeS;
     const way = passed / FADE_S;
-    this.#share = Math.min(1, Math.max(0, this.#share + (isDrawn ? way : -way)));
+    this.#share = isAtOnce ? 1 : Math.min(1, Math.max(0, this.#share + (isDrawn ? way : -way)));
     const shown = Math.max(this.#share, least);
     const { share } = this.mesh.material.uniforms;
     if (share !== undefined) share.value = shown * shown * (3 - 2 * shown);

@@ -1,6 +1,6 @@
 /** What the participant sees: the room, its mirror, bodies and boxes. Imports three.js. */
 export { type Palette, paletteOf, STANDARD } from "./appearance";
-export type { BoundaryProblem, FloorPoint } from "./boundary";
+export { type BoundaryProblem, edgeDistanceM, type FloorPoint } from "./boundary";
 export { PANELS_ORDER } from "./curtain";
 export type { Device, DeviceKind } from "./devices";
 export { BodyEyes } from "./eyes";

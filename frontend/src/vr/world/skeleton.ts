@@ -36,13 +36,18 @@ const NONE: readonly number[] = [];
 /** What is needed of a body to place its parts. */
 export type Skeleton = Pick<BodyBinding, "stature_m" | "parts" | "parents" | "joints_m">;
 
-/** The product's skeleton, 1 m tall: to be scaled to a stature. */
-export const UNIT_SKELETON: Skeleton = {
+/**
+ * The product's skeleton, 1 m tall: to be scaled to a stature. With `armStretch` upper arms and
+ * forearms are longer or shorter by this factor.
+ */
+export const unitSkeleton = (armStretch = 1): Skeleton => ({
   stature_m: 1,
   parts: JOINTS.joints,
   parents: JOINTS.parents,
-  joints_m: STREAMED.map((name) => [...restOf(name)]),
-};
+  joints_m: STREAMED.map((name) => [...restOf(name, armStretch)]),
+});
+
+export const UNIT_SKELETON: Skeleton = unitSkeleton();
 
 /** The T-pose on the start square of somebody whose hips' joint is this high, metres. */
 export function tPose(hipsHeightM: number): Float32Array {

@@ -1,9 +1,9 @@
 /**
- * The three sounds of a task, made of sine waves: a panel that counts, a completed task, the end of
- * the time. Nothing is loaded.
+ * The sounds, made of sine waves: a panel that counts, a completed task, the end of the time, and an
+ * answer that was pressed. Nothing is loaded.
  */
 
-export type Sound = "touch" | "complete" | "time_up";
+export type Sound = "touch" | "complete" | "time_up" | "press";
 
 interface Tone {
   readonly hertz: number;
@@ -13,6 +13,7 @@ interface Tone {
 }
 
 const SOUNDS: Readonly<Record<Sound, readonly Tone[]>> = {
+  press: [{ hertz: 880, atS: 0, lastsS: 0.05 }],
   touch: [{ hertz: 660, atS: 0, lastsS: 0.12 }],
   complete: [
     { hertz: 523.25, atS: 0, lastsS: 0.22 },

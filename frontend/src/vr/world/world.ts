@@ -21,6 +21,7 @@ import {
   boundaryLine,
   boundaryProblem,
   type FloorPoint,
+  sizeOf,
 } from "./boundary";
 import { Curtain, PANELS_ORDER } from "./curtain";
 import { type Device, Devices } from "./devices";
@@ -81,6 +82,8 @@ export interface WorldFrame {
   readonly isFrozen: boolean;
   /** Hide the room within 200 ms, or show it again. Panels stay visible. */
   readonly isCurtainDrawn: boolean;
+  /** Hide it in this frame already: what is seen changes from one frame to the next. */
+  readonly isCurtainAtOnce?: boolean;
 }
 
 export class World {
@@ -107,6 +110,7 @@ export class World {
   #isSeenFromWithin = true;
   #worn: string | null = null;
   #statureM = 1.7;
+  #armStretch = 1;
   #greenBefore = 0;
   #completedBefore: number | null = null;
   #wasFrozen = false;
@@ -145,14 +149,17 @@ export class World {
 
   /**
    * Let both bodies and the figure be this body, at the participant's stature. Until its model has
-   * been added, a plain one of capsules is shown.
+   * been added, a plain one of capsules is shown, whose arms are `armStretch` times as long as is
+   * usual for the stature.
    */
-  wear(name: string | null, statureM: number): void {
-    if (name === this.#worn && statureM === this.#statureM) return;
+  wear(name: string | null, statureM: number, armStretch = 1): void {
+    const hasOtherLengths = statureM !== this.#statureM || armStretch !== this.#armStretch;
+    if (name === this.#worn && !hasOtherLengths) return;
     for (const body of this.#bodies.values()) body.group.visible = false;
-    if (statureM !== this.#statureM) for (const one of this.#wardrobe.keys()) this.#clear(one);
+    if (hasOtherLengths) for (const one of this.#wardrobe.keys()) this.#clear(one);
     this.#worn = name;
     this.#statureM = statureM;
+    this.#armStretch = armStretch;
   }
 
   /**
@@ -182,11 +189,22 @@ export class World {
     }
   }
 
+  /** The language of the words at the mirror. */
+  speak(language: string): void {
+    this.#board.speak(boardWords(language));
+  }
+
   /** Check the guarded space, and show the line of what is needed if it does not suffice. */
   checkBoundary(bounds: readonly FloorPoint[] | null): BoundaryProblem {
     const problem = boundaryProblem(bounds, this.#area);
     this.#line.visible = problem !== null;
     return problem;
+  }
+
+  /** The guarded space and the one that is needed, width by depth, metres. */
+  sizesOf(bounds: readonly FloorPoint[] | null) {
+    const { minX, maxX, minZ, maxZ } = this.#area;
+    return { haveM: sizeOf(bounds), needM: [maxX - minX, maxZ - minZ] as const };
   }
 
   /** Hide the line again, once somebody has decided to go on. */
@@ -201,7 +219,9 @@ export class World {
     this.#setups.show(visible.setups, task);
     this.#board.show(frame.remainingS, frame.completed);
     const beyond = frame.eyes === null ? 0 : this.#nearness(frame.eyes.positionM[2]);
-    this.#curtain.show(frame.timeS, frame.isCurtainDrawn, beyond);
+    const isAtOnce = frame.isCurtainAtOnce ?? false;
+    this.#curtain.show(frame.timeS, frame.isCurtainDrawn || isAtOnce, beyond, isAtOnce);
+    this.#hideCovered();
     this.#sound(frame);
     this.#wasFrozen = frame.isFrozen;
   }
@@ -218,6 +238,18 @@ export class World {
     this.#room.material.map?.dispose();
     this.#room.material.dispose();
     this.sounds.dispose();
+  }
+
+  /** What is behind a curtain that has closed is not drawn. */
+  #hideCovered(): void {
+    const isOpen = this.#curtain.share < 1;
+    this.#room.visible = isOpen;
+    if (isOpen) return;
+    for (const body of this.#bodies.values()) body.group.visible = false;
+    this.#shadows.show(null);
+    this.#devices.show(NO_DEVICES);
+    this.#setups.mesh.visible = false;
+    this.#board.mesh.visible = false;
   }
 
   #showBodies({ bodies, visible, isFrozen, eyes }: WorldFrame): void {
@@ -268,7 +300,7 @@ export class World {
     const model = this.#models.get(this.#worn);
     const body =
       model === undefined
-        ? new PlainBody(this.#statureM, look, this.#reflecting)
+        ? new PlainBody(this.#statureM, look, this.#reflecting, this.#armStretch)
         : new SkinnedBody(model, this.#statureM, look, this.#reflecting);
     body.setSeenFromWithin(slot !== "figure" && this.#isSeenFromWithin);
     this.#bodies.set(slot, body);

@@ -1,8 +1,11 @@
 """Tests of avatar configurations over HTTP: keys, versions, files and permissions."""
 
 import json
+from concurrent.futures import ThreadPoolExecutor
+from itertools import product
 
 import pytest
+from httpx2 import Response
 
 from app.clock import Clock
 from app.features.movement.avatar.schemas import NewAvatarVersion
@@ -14,6 +17,7 @@ from app.features.movement.avatar.service import (
 )
 from app.models import AvatarVersion, StudySession
 from app.protocol.avatar import avatar_text, file_of, load_avatar, loaded
+from app.protocol.avatar_editing import differences
 from app.science.avatar.configuration import Configuration, lock, with_global
 from app.science.avatar.mjcf import default_configuration
 from tests.api.people import sign_in
@@ -79,6 +83,22 @@ def test_a_new_installation_has_the_standard_avatar(fresh_lab: Lab) -> None:
     assert first["configuration"] == as_json(SHIPPED)
 
 
+@pytest.mark.one_engine
+def test_shipped_gains_say_where_they_come_from(fresh_lab: Lab) -> None:
+    """The note of each shipped version names the origin of its gains, also of stored ones."""
+    with fresh_lab.database.writing() as db:
+        for number in (1, 2):
+            row = db.get_one(AvatarVersion, ("standard", number))
+            before = row.content_hash
+            row.note = ""
+    with fresh_lab.database.writing() as db:
+        add_shipped_avatar(db, Clock().utc_now())
+    newest, first = ok(fresh_lab.operator.get(f"{PATH}/standard"))["versions"]
+    assert first["note"].startswith("Gains by rule, not tuned")
+    assert newest["note"].startswith("Gains by relay tuning of the neutral body")
+    assert newest["content_hash"] == before
+
+
 def test_versions_are_appended_and_kept(fresh_lab: Lab) -> None:
     """Versions of an avatar are appended with author, origin and note, and stay readable."""
     first = new(fresh_lab, "soft")
@@ -110,6 +130,30 @@ def test_the_same_content_is_not_saved_twice_in_a_row(fresh_lab: Lab) -> None:
     save(fresh_lab, "soft", CAST, 1)
     repeated = save(fresh_lab, "soft", CAST, 1)
     assert len(repeated["versions"]) == 2
+
+
+@pytest.mark.one_engine
+def test_a_note_is_never_dropped(fresh_lab: Lab) -> None:
+    """A request sent twice is answered alike; another note for the same content is refused."""
+    new(fresh_lab, "soft")
+    body = {"based_on": 1, "origin": "by_hand", "configuration": as_json(CAST)}
+    path = f"{PATH}/soft/versions"
+    first = ok(fresh_lab.operator.post(path, json=body | {"note": "mine"}))
+    assert ok(fresh_lab.operator.post(path, json=body | {"note": "mine"})) == first
+    refusal = error(fresh_lab.operator.post(path, json=body | {"note": "yours"}), 409, "conflict")
+    assert (refusal["value"], refusal["valid"]) == ("yours", "mine")
+    assert len(ok(fresh_lab.operator.get(f"{PATH}/soft"))["versions"]) == 2
+
+
+@pytest.mark.one_engine
+def test_a_key_is_no_other_value(fresh_lab: Lab) -> None:
+    """A key that a study file would read as nothing, or as yes or no, is refused."""
+    body = {"title": "Any", "origin": "by_hand", "configuration": as_json(CAST)}
+    for key in ("null", "true", "no"):
+        refusal = error(
+            fresh_lab.operator.post(PATH, json=body | {"key": key}), 422, "invalid_input"
+        )
+        assert refusal["value"] == key
 
 
 def test_saving_on_an_outdated_version_is_refused(fresh_lab: Lab) -> None:
@@ -259,3 +303,75 @@ def test_a_tuning_report_is_stored_with_its_version(fresh_lab: Lab) -> None:
     assert ok(fresh_lab.operator.get(f"{PATH}/standard/versions/1"))["report"] is None
     with fresh_lab.database.reading() as db:
         assert db.query(AvatarVersion).filter(AvatarVersion.report.is_(None)).count() == 2
+
+
+def test_of_several_people_who_save_at_once_one_does(fresh_lab: Lab) -> None:
+    """Of simultaneous saves under a key or on a version one is stored; the others lose nothing.
+
+    Each of the others is told that somebody was faster, and can save after it.
+    """
+    people = [sign_in(fresh_lab, "experimenter") for _ in range(4)]
+
+    def at_once(path: str, kp: float, **fields: object) -> list[Response]:
+        def post(at: int) -> Response:
+            content = as_json(with_global(SHIPPED, group="head", kp=kp + at))
+            body = {"origin": "by_hand", "configuration": content, **fields}
+            return people[at].post(path, json=body)
+
+        with ThreadPoolExecutor(len(people)) as pool:
+            return list(pool.map(post, range(len(people))))
+
+    for replies in (
+        at_once(PATH, 10.0, key="soft", title="Soft"),
+        at_once(f"{PATH}/soft/versions", 20.0, based_on=1),
+    ):
+        refused = [reply for reply in replies if not reply.is_success]
+        assert len(refused) == len(people) - 1
+        assert all(reply.status_code == 409 for reply in refused)
+        assert all(reply.json()["error"]["remedy"] for reply in refused)
+    view = ok(fresh_lab.operator.get(f"{PATH}/soft"))
+    assert [one["number"] for one in view["versions"]] == [2, 1]
+    assert [one["number"] for one in save(fresh_lab, "soft", CAST, 2)["versions"]] == [3, 2, 1]
+
+
+def test_any_two_versions_are_compared_and_none_can_be_changed(fresh_lab: Lab) -> None:
+    """The difference between any two versions is that of their contents; no request edits one."""
+    contents = [SOFT, CAST, SHIPPED, STANDARD]
+    new(fresh_lab, "soft")
+    for number, content in enumerate(contents[1:], start=1):
+        save(fresh_lab, "soft", content, number)
+    for old, new_one in product(range(4), repeat=2):
+        path = f"{PATH}/soft/versions/{old + 1}/difference/{new_one + 1}"
+        told = ok(fresh_lab.operator.get(path))
+        expected = differences(contents[old], contents[new_one])
+        assert [one["path"] for one in told["changed"]] == [one.path for one in expected]
+        assert told["same"] == (old == new_one)
+    for path in ("soft", "soft/versions/1"):
+        for method in ("PUT", "PATCH", "DELETE"):
+            answer = fresh_lab.operator.request(method, f"{PATH}/{path}", json={})
+            assert answer.status_code == 405, (method, path)
+
+
+@pytest.mark.one_engine
+@pytest.mark.parametrize(
+    ("title", "refused"),
+    [
+        ("Weicher Arm \U0001f9be \u5de6\u8155", ""),
+        ("\u0630\u0631\u0627\u0639", ""),
+        ("x" * 200, ""),
+        ("x" * 201, "200"),
+        ("soft\u202edrah", "turns the direction of writing"),
+        ("soft\x1b", "control character"),
+        ("   ", "1 character"),
+    ],
+)
+def test_names_are_kept_as_typed_or_refused(fresh_lab: Lab, title: str, refused: str) -> None:
+    """A name may have any letters; what turns writing around or hides is refused with its place."""
+    body = {"key": "named", "title": title, "origin": "by_hand", "configuration": as_json(SOFT)}
+    answer = fresh_lab.operator.post(PATH, json=body)
+    if refused:
+        said = error(answer, 422, "invalid_input")
+        assert refused in str(said["details"])
+        error(fresh_lab.operator.get(f"{PATH}/named"), 404, "not_found")
+    else:
+        assert ok(answer)["title"] == title

@@ -7,11 +7,13 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+from app.models import AvatarVersion
+from app.protocol.avatar import loaded
 from app.science.avatar.body import FINGER_PARTS
 from app.science.avatar.configuration import lock, without_parts
 from app.science.avatar.mjcf import avatar_model
-from tests.features.lab import Lab, error
-from tests.features.movement.avatar.test_avatars import CAST, PATH, SHIPPED, new, save
+from tests.features.lab import Lab, error, ok
+from tests.features.movement.avatar.test_avatars import CAST, PATH, SHIPPED, as_json, new, save
 
 pytestmark = pytest.mark.one_engine
 
@@ -30,6 +32,36 @@ def test_a_models_etag_is_its_hash(fresh_lab: Lab) -> None:
     assert taller.headers["etag"] != tag
 
 
+def test_a_configuration_can_be_tried_without_storing_it(fresh_lab: Lab) -> None:
+    """The model of a draft is that of the saved version, a box to drop is added, none is stored."""
+    draft = {"configuration": as_json(SHIPPED), "stature_m": 1.7001}
+    before = fresh_lab.operator.get(PATH).json()
+    plain = fresh_lab.operator.post(f"{PATH}/model", json=draft)
+    assert plain.text == avatar_model(SHIPPED, 1.7).mjcf
+    assert plain.headers["etag"] == f'"{hashlib.sha256(plain.content).hexdigest()}"'
+    boxed = fresh_lab.operator.post(f"{PATH}/model", json={**draft, "box": {"mass_kg": 3}})
+    root = ET.fromstring(boxed.text)  # noqa: S314 - our own text
+    box = root.findall("worldbody/body")[-1]
+    geom = box.find("geom")
+    assert geom is not None
+    assert (box.get("name"), box.get("gravcomp"), geom.get("mass")) == ("box", "1", "3")
+    assert fresh_lab.operator.get(PATH).json() == before
+
+
+def test_a_configuration_that_cannot_be_built_is_not_tried(fresh_lab: Lab) -> None:
+    """A draft that lacks a forearm, names an unknown body or contradicts itself is refused."""
+    armless = as_json(without_parts(SHIPPED, frozenset({"LeftLowerArm"})))
+    answer = fresh_lab.operator.post(
+        f"{PATH}/model", json={"configuration": armless, "stature_m": 1.7}
+    )
+    assert "LeftLowerArm" in error(answer, 409, "conflict")["message"]
+    unknown = as_json(SHIPPED) | {"humanoid": "0" * 64}
+    answer = fresh_lab.operator.post(
+        f"{PATH}/model", json={"configuration": unknown, "stature_m": 1.7}
+    )
+    assert "humanoid" in str(error(answer, 422, "invalid_config")["details"])
+
+
 def test_locked_groups_have_no_hinges_in_the_model(fresh_lab: Lab) -> None:
     """Locked joint groups have no hinges in the model of that version."""
     new(fresh_lab, "soft")
@@ -41,10 +73,31 @@ def test_locked_groups_have_no_hinges_in_the_model(fresh_lab: Lab) -> None:
 
 
 def test_a_model_may_lack_fingers_but_no_arm(fresh_lab: Lab) -> None:
-    """An avatar model without fingers is built; without a forearm it is refused."""
+    """An avatar without fingers is built; one without a forearm is refused before it is stored.
+
+    A version that an earlier release stored without one is not built.
+    """
     new(fresh_lab, "mitten", without_parts(SHIPPED, frozenset(FINGER_PARTS)))
     assert fresh_lab.operator.get(f"{PATH}/mitten/model?stature_m=1.7").is_success
-    new(fresh_lab, "armless", without_parts(SHIPPED, frozenset({"LeftLowerArm"})))
+    armless = without_parts(SHIPPED, frozenset({"LeftLowerArm"}))
+    request = {
+        "key": "armless",
+        "title": "Armless",
+        "origin": "by_hand",
+        "configuration": as_json(armless),
+    }
+    refused = error(fresh_lab.operator.post(PATH, json=request), 422, "invalid_config")
+    (detail,) = refused["details"]
+    assert (detail["path"], detail["value"]) == ("configuration.axes", ["LeftLowerArm"])
+    assert detail["message"] == "No body can be built without LeftLowerArm."
+    edit = {"configuration": as_json(armless), "operations": []}
+    (told,) = ok(fresh_lab.operator.post(f"{PATH}/edit", json=edit))["problems"]
+    assert told["message"] == detail["message"]
+    new(fresh_lab, "armless")
+    content = loaded(armless)
+    with fresh_lab.database.writing() as db:
+        row = db.get_one(AvatarVersion, ("armless", 1))
+        row.canonical_json, row.content_hash = content.canonical_json, content.content_hash
     answer = fresh_lab.operator.get(f"{PATH}/armless/model?stature_m=1.7")
     assert "LeftLowerArm" in error(answer, 409, "conflict")["message"]
 

@@ -2,8 +2,12 @@
 
 import pytest
 
+from app.models import AvatarVersion, StudySession
+from app.protocol.avatar import loaded
+from app.science.avatar.configuration import without_parts
 from tests.features.lab import Lab, error, ok
-from tests.features.movement.avatar.test_avatars import CAST, PATH, as_json, new, save
+from tests.features.movement.avatar.test_avatars import CAST, PATH, SOFT, as_json, new, save
+from tests.features.record.preflight.test_preflight import checks_of
 from tests.protocol.helpers import edited
 
 KEY = "physics-study"
@@ -25,12 +29,26 @@ def test_a_session_keeps_its_studys_avatar_version(fresh_lab: Lab) -> None:
     joined = f"/api/studies/{KEY}/sessions"
     view = ok(fresh_lab.operator.post(joined, json={"kind": "test"}))
     assert (view["avatar"], view["avatar_configuration_hash"]) == ("physics", first)
+    assert (view["avatar_version"]["key"], view["avatar_version"]["version"]) == ("soft", 1)
     changed = {"yaml": study("{key: soft, version: 2}")}
     ok(fresh_lab.operator.post(f"/api/studies/{KEY}/versions", json=changed))
     later = ok(fresh_lab.operator.post(joined, json={"kind": "test"}))
     assert later["avatar_configuration_hash"] == second
+    assert later["avatar_version"]["version"] == 2
+    (listed,) = [one for one in ok(fresh_lab.operator.get(PATH)) if one["key"] == "soft"]
+    assert listed["content_hashes"] == [first, second]
     assert fresh_lab.view(view["id"])["avatar_configuration_hash"] == first
     assert ok(fresh_lab.operator.get(f"{PATH}/soft/versions/1"))["sessions"] == 1
+    for number in (1, 2):
+        (use,) = ok(fresh_lab.operator.get(f"{PATH}/soft/versions/{number}"))["used_by"]
+        assert (use["study"], use["study_version"]) == (KEY, number)
+        assert (use["sessions"], use["running_sessions"]) == (1, 0)
+        assert use["is_newest"] == (number == 2)
+    fresh_lab.command(later, "start")
+    (use,) = ok(fresh_lab.operator.get(f"{PATH}/soft"))["newest"]["used_by"]
+    assert use["running_sessions"] == 1
+    assert save(fresh_lab, "soft", SOFT, 2)["newest"]["used_by"] != []
+    assert ok(fresh_lab.operator.get(f"{PATH}/soft/versions/2"))["content_hash"] == second
 
 
 @pytest.mark.one_engine
@@ -42,6 +60,41 @@ def test_a_study_cannot_name_an_unknown_avatar(fresh_lab: Lab) -> None:
     assert reply["problems"][0]["valid"] == ["standard"]
     refusal = error(fresh_lab.operator.post("/api/studies", json=body), 422, "invalid_config")
     assert refusal["details"][0]["path"] == "avatar_configuration.key"
+
+
+def test_a_stored_avatar_without_parts_that_a_session_needs_is_found_before_it(
+    fresh_lab: Lab,
+) -> None:
+    """Earlier releases stored avatars without a hand: studies, pre-flight and headset refuse them.
+
+    Studies and sessions that use one already are still listed and read.
+    """
+    new(fresh_lab, "soft")
+    stored = {"yaml": study("{key: soft, version: 1}")}
+    ok(fresh_lab.operator.post("/api/studies", json=stored))
+    view = ok(fresh_lab.operator.post(f"/api/studies/{KEY}/sessions", json={"kind": "test"}))
+    one_handed = loaded(without_parts(SOFT, frozenset({"RightHand"})))
+    with fresh_lab.database.writing() as db:
+        row = db.get_one(AvatarVersion, ("soft", 1))
+        row.canonical_json, row.content_hash = one_handed.canonical_json, one_handed.content_hash
+        session = db.get_one(StudySession, view["id"])
+        session.avatar_configuration_hash = one_handed.content_hash
+    missing = "No body can be built without RightHand."
+    (problem,) = ok(fresh_lab.operator.post("/api/studies/check", json=stored))["problems"]
+    assert problem["path"] == "avatar_configuration.version"
+    assert problem["message"] == f"Version 1 of the avatar 'soft' cannot be used: {missing}"
+    assert "save one in which these parts have all their axes" in problem["remedy"]
+    path = f"/api/studies/{KEY}/versions"
+    error(fresh_lab.operator.post(path, json=stored), 422, "invalid_config")
+    check = checks_of(fresh_lab, view["id"])["configuration"]
+    assert (check["code"], check["status"]) == ("configuration.incomplete", "fail")
+    assert missing in check["details"]
+    headset = {"authorization": f"Bearer {fresh_lab.headset_token(view['id'])}"}
+    asked = fresh_lab.stranger().post("/api/vr/avatar", json={"stature_m": 1.7}, headers=headset)
+    assert missing in error(asked, 409, "conflict")["message"]
+    assert ok(fresh_lab.operator.get(f"/api/studies/{KEY}"))["key"] == KEY
+    shown = ok(fresh_lab.operator.get(f"{PATH}/soft"))["newest"]
+    assert shown["configuration"] == as_json(one_handed.configuration)
 
 
 @pytest.mark.one_engine

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from app.adapters.bvh import parse_bvh
+from app.adapters.captures.bvh_export import to_bvh
+from app.adapters.captures.reader import read_capture
+from app.science.anatomy import mirrored_skeleton
 from app.science.retargeting import reference_avatar
-from app.science.rig import to_world
+from app.science.rig import RigMotion, to_world
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.captures.files import (
     LIFT_M,
@@ -58,6 +61,24 @@ def test_locked_feet_slide_less(lab: Lab, walk: Json) -> None:
     (avatar,) = ok(lab.operator.get(address))["avatars"]
     assert avatar["slide_m_s"] <= avatar["slide_before_m_s"]
     assert avatar["lowered_m"] >= 0.0
+
+
+def test_a_mirrored_walk_is_mirrored_back_and_named(lab: Lab, walk: Json) -> None:
+    """A walk in left-handed axes says so, and has the same steps on avatars, above the floor."""
+    clip = read_capture(walk_bvh(), name="walk.bvh").motion
+    assert isinstance(clip, RigMotion)
+    there = uploaded(lab.operator, to_bvh(mirrored_skeleton(clip)).encode(), "mirrored.bvh")
+    assert walk["summary"]["skeleton"]["notices"] == []
+    (notice,) = there["summary"]["skeleton"]["notices"]
+    assert (notice["rule"], notice["action"]) == ("mirrored", "mended")
+    heights = []
+    for capture in (walk, there):
+        path = f"/api/captures/{capture['id']}/verification?avatars=165cm"
+        (avatar,) = ok(lab.operator.get(path))["avatars"]
+        assert avatar["notices"] == []
+        assert avatar["floor"]["left_m"] <= 0.01
+        heights.append(avatar["mean_step_height_m"])
+    assert heights[0] == pytest.approx(heights[1], abs=1e-3)
 
 
 def test_a_preview_on_an_avatar_has_its_size(lab: Lab, walk: Json) -> None:
@@ -115,6 +136,20 @@ def test_invalid_avatar_sizes_are_refused(lab: Lab, walk: Json) -> None:
     many = "&".join(f"avatars={120 + n}cm" for n in range(9))
     error(lab.operator.get(f"{path}/verification?{many}"), 422, "invalid_input")
     error(lab.operator.get(f"{path}/verification"), 422, "invalid_input")
+
+
+@pytest.mark.one_engine
+def test_a_generated_walk_needs_no_capture(fresh_lab: Lab) -> None:
+    """The generated walk of eight steps keeps its lifts, and its strides grow with the leg."""
+    found = ok(fresh_lab.operator.get(f"/api/captures/generated/verification?{AVATARS}"))
+    assert found["lifts_agree"]
+    # Of nine swings, the first and the last are half as long: (2 x 0.7 + 7 x 1.4) / 9.
+    assert len(found["source"]["strides"]) == 9
+    assert found["source"]["mean_stride_length_m"] == pytest.approx(1.2444, abs=1e-3)
+    lengths = [one["mean_stride_length_m"] for one in found["avatars"]]
+    assert lengths == sorted(lengths)
+    for one, length in zip(found["avatars"], lengths, strict=True):
+        assert length == pytest.approx(found["source"]["mean_stride_length_m"] * one["leg_ratio"])
 
 
 def test_without_legs_there_is_no_verification(fresh_lab: Lab) -> None:

@@ -6,10 +6,14 @@ from dataclasses import replace
 import pytest
 from sqlalchemy import update
 
-from app.adapters.humanoids import ModelRights
-from app.features.movement.humanoids.licences import stored_licence
+from app.adapters.humanoids import ModelRights, read_humanoid
+from app.features.movement.humanoids.checks import attention_of, checks_of, reach_off_m
+from app.features.movement.humanoids.licences import asked_terms, stored_licence
+from app.features.movement.humanoids.service import parsed_figure
 from app.features.results.analysis.material import OWN_BODY
 from app.models import HumanoidRow
+from app.protocol.humanoid import figure_json
+from app.science.avatar.body import figure_of
 from tests.api.people import sign_in
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.avatar.test_avatars import PATH as AVATARS
@@ -131,6 +135,20 @@ def test_a_licence_that_restricts_wearing_must_be_confirmed(fresh_lab: Lab) -> N
 
 
 @pytest.mark.one_engine
+@pytest.mark.parametrize("name", ["null", "nan", "true", "no", OWN_BODY])
+def test_words_that_files_read_otherwise_are_no_names(fresh_lab: Lab, name: str) -> None:
+    """A name that YAML or a table reads as nothing or as yes or no is refused."""
+    upload(fresh_lab)
+    refusal = error(
+        fresh_lab.operator.patch(f"{PATH}/{HASH}", json={"name": name}), 422, "invalid_input"
+    )
+    assert refusal["value"] == name
+    title = {"title": "a\u202egpj.glb"}
+    refused = error(fresh_lab.operator.patch(f"{PATH}/{HASH}", json=title), 422, "invalid_input")
+    assert "Character 2 is U+202E" in refused["details"][0]["message"]
+
+
+@pytest.mark.one_engine
 def test_a_body_is_checked(fresh_lab: Lab) -> None:
     """The checks name absent fingers, and say of old measurements that triangles are unknown."""
     four = upload(fresh_lab, FOUR, "four.vrm").json()["content_hash"]
@@ -143,6 +161,35 @@ def test_a_body_is_checked(fresh_lab: Lab) -> None:
     set_columns(fresh_lab, four, triangles=20_001)
     checks = {one["key"]: one for one in ok(fresh_lab.operator.get(f"{PATH}/{four}"))["checks"]}
     assert (checks["triangles"]["status"], checks["triangles"]["value"]) == ("warn", 20_001.0)
+
+
+@pytest.mark.one_engine
+def test_the_list_says_what_asks_for_attention(fresh_lab: Lab) -> None:
+    """The list names too many triangles, open terms of a licence and a hand that misses a box."""
+    own = upload(fresh_lab).json()["content_hash"]
+    view = ok(fresh_lab.operator.get(f"{PATH}/{own}"))
+    # Arms of 93 % of 0.564 m, and shoulders 2 cm further back: the hand is as much nearer.
+    assert view["reach_off_m"] == pytest.approx(0.07 * 0.564 + 0.02, abs=0.002)
+    assert view["attention"] == []
+    figure = figure_of(read_humanoid(humanoid_file()).humanoid)
+    narrow = {
+        part: (0.3 * x if "Arm" in part or part.endswith("Hand") else x, y, z)
+        for part, (x, y, z) in figure.places_m.items()
+    }
+    short = figure_json(replace(figure, places_m=narrow))
+    set_columns(fresh_lab, own, figure=short, triangles=20_001, licence=STRICT)
+    with fresh_lab.database.reading() as db:
+        assert reach_off_m(parsed_figure(short)) == pytest.approx(0.45, abs=0.05)
+        row = db.get_one(HumanoidRow, own)
+        checks = {one.key: one.status for one in checks_of(row, parsed_figure(short))}
+        assert attention_of(row.triangles, reach_off_m(parsed_figure(short)), asked_terms(row)) == [
+            key for key, status in checks.items() if status == "warn"
+        ]
+    assert [key for key, status in checks.items() if status == "warn"] == [
+        "reach",
+        "triangles",
+        "wearing",
+    ]
 
 
 @pytest.mark.one_engine

@@ -49,6 +49,12 @@ def test_a_models_summary_states_its_data(walking_lab: Lab, model: Json) -> None
     assert sum(summary["census"]["counts"]) == 9
     assert set(summary["dependencies"]) == {"length_m", "turning_per_m", "stature_m"}
     assert set(summary["left_out"]) == {"neighbours", "nodes", "people"}
+    methods = [one["method"] for one in summary["predicted"]]
+    assert methods == ["mixed", "constant speed", "line", "log-log"]
+    assert {(one["walks"], one["people"]) for one in summary["predicted"]} == {(9, 3)}
+    # Three people are too few for an interval, as the command says.
+    assert {tuple(one["crps_less_s"][1:]) for one in summary["predicted"]} == {(None, None)}
+    assert all("3 people cannot say" in one["no_interval"] for one in summary["predicted"])
     path = f"/api/walking/models/{model['id']}"
     with np.load(io.BytesIO(walking_lab.operator.get(f"{path}/file").content)) as archive:
         assert summary["model_hash"] in archive["header"].tobytes().decode()
@@ -66,6 +72,7 @@ def test_a_prediction_is_a_distribution_of_durations(walking_lab: Lab, model: Js
     assert len(first["durations_s"]) == 60
     assert first["durations_s"] != other["durations_s"]
     assert first["kinds"] == ["synthetic"]
+    assert first["model"] == "mixed"
     assert first["assumed"] == ["stature_m"]
     assert list(first["quantiles_s"].values()) == sorted(first["quantiles_s"].values())
     for walker in first["walkers"]:
@@ -121,6 +128,21 @@ def test_a_model_is_fitted_to_tracks_of_people(walking_lab: Lab) -> None:
     ok(calls.delete(f"/api/walking/models/{model['id']}"))
     acts = [one["action"] for one in ok(calls.get("/api/audit"))["entries"]]
     assert {"walking.model_ordered", "walking.model_removed", "walking.walks_removed"} <= set(acts)
+
+
+@pytest.mark.one_engine
+def test_assumed_units_of_a_table_are_shown_and_doubted(walking_lab: Lab) -> None:
+    """A table in feet without units is stored with what was assumed and why that is doubtful."""
+    header, *lines = table().decode().splitlines()
+    assert header == "id,time_s,x_m,y_m"
+    cells = [line.split(",") for line in lines]
+    feet = [f"{who},{t},{float(x) / 0.3048},{float(y) / 0.3048}" for who, t, x, y in cells]
+    data = "\n".join(["id,time_s,x,y", *feet]).encode()
+    summary = ok(upload_tracks(walking_lab, data))["summary"]
+    assert summary["assumed"] == ["the columns x and y name no unit: taken as metres"]
+    assert "times as fast as people usually walk" in summary["doubts"][0]
+    said = ok(upload_tracks(walking_lab, table()))["summary"]
+    assert (said["assumed"], said["doubts"]) == ([], [])
 
 
 @pytest.mark.one_engine

@@ -37,6 +37,17 @@ def test_a_code_pairs_a_tablet(lab: Lab) -> None:
     assert lab.view(session_id)["devices"][0]["name"] == "iPad"
 
 
+@pytest.mark.one_engine
+def test_a_name_that_turns_writing_around_is_refused_and_uses_up_no_code(lab: Lab) -> None:
+    """A device's name is plain text as a title is: the refusal says which character is not."""
+    session_id = lab.join()["id"]
+    code, tablet = lab.show_code(session_id, "tablet"), lab.stranger()
+    refused = error(use(tablet, code, name="iPad \u202e3"), 422, "invalid_input")
+    assert "Character 6 is U+202E" in refused["details"][0]["message"]
+    ok(use(tablet, code, name=" iPad 3 "))
+    assert [one["name"] for one in lab.view(session_id)["devices"]] == ["iPad 3"]
+
+
 def test_a_code_works_once(lab: Lab) -> None:
     """A second tablet with a used code is refused, and the first stays paired."""
     session_id = lab.join()["id"]

@@ -17,6 +17,7 @@ from app.features.record.doubts.laws import (
     Moment,
     PhaseClaims,
     SessionClaims,
+    Stature,
     StreamClaim,
     doubts_about,
     exceeds_possible,
@@ -254,3 +255,25 @@ def test_the_servers_own_observations_become_doubts() -> None:
     """Each observation by the server itself becomes a doubt with its message."""
     seen = replace(HONEST, observed=("one thing", "another"))
     assert [one.words for one in doubts_about(seen)] == ["another", "one thing"]
+
+
+@pytest.mark.parametrize(
+    ("worn_m", "status", "doubted"),
+    [(1.6, "done", False), (1.56, "done", True), (0.6, "done", True), (0.6, "voided", False)],
+)
+def test_bodies_are_worn_at_the_participants_stature(
+    *, worn_m: float, status: str, doubted: bool
+) -> None:
+    """Statures of one phase are one person's to 15 cm; a phase that was repeated does not count.
+
+    The doubt is about the session: a phase's number could tell which body was worn.
+    """
+    statures = (
+        Stature("the participant", 1.75),
+        Stature("the calibration", 1.72),
+        Stature("a body that was worn", worn_m),
+    )
+    claims = replace(HONEST, phases=(replace(PHASE, statures=statures, status=status),))
+    found = [one for one in doubts_about(claims) if one.kind == "stature"]
+    assert [one.phase_id for one in found] == [None] * doubted
+    assert all(f"{worn_m:.2f} m" in one.words for one in found)

@@ -7,8 +7,10 @@ import mujoco
 import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
+from sqlalchemy import update
 
 from app.features.record.sessions.contents import content_body, contents_of
+from app.models import StudySession
 from app.protocol.avatar import AvatarFile, configuration_of, loaded
 from app.science.avatar.mjcf import default_configuration
 from app.science.avatar.simulation import PhysicsAvatar
@@ -59,7 +61,7 @@ def test_the_avatar_model_has_the_stature_and_the_studys_surfaces(
     assert {model.geom(name).name for name in surfaces} == set(surfaces)
     (event,) = (one for one in fresh_lab.events(session["id"]) if one["type"] == "avatar_built")
     assert event["data"]["configuration_hash"] == reply["configuration_hash"]
-    assert "1.732" not in json.dumps(event)
+    assert "1.732" not in json.dumps(event["data"])
     with fresh_lab.database.reading() as db:
         (content,) = contents_of(db, session["id"], "avatar")
         body = content_body(content)
@@ -78,6 +80,22 @@ def test_a_repeated_avatar_request_records_nothing_new(fresh_lab: Lab, session: 
 
 
 @pytest.mark.one_engine
+def test_nobody_gets_another_body_after_the_end(fresh_lab: Lab, session: Json) -> None:
+    """After a session's end its recorded body may be fetched again, but no other one is built."""
+    token = fresh_lab.headset_token(session["id"])
+    worn = ok(request_avatar(fresh_lab, token, {"stature_m": 1.7}))
+    with fresh_lab.database.writing() as db:
+        own = StudySession.id == session["id"]
+        db.execute(update(StudySession).where(own).values(status="completed"))
+    again = ok(request_avatar(fresh_lab, token, {"stature_m": 1.7}))
+    assert again["model_hash"] == worn["model_hash"]
+    refused = request_avatar(fresh_lab, token, {"stature_m": 0.6})
+    assert error(refused, 409, "conflict")["value"] == "completed"
+    types = [event["type"] for event in fresh_lab.events(session["id"])]
+    assert types.count("avatar_built") == 1
+
+
+@pytest.mark.one_engine
 def test_measured_segment_lengths_change_the_model(fresh_lab: Lab, session: Json) -> None:
     """A measured segment length changes the model; an impossible one is refused with its value."""
     token = fresh_lab.headset_token(session["id"])
@@ -90,6 +108,8 @@ def test_measured_segment_lengths_change_the_model(fresh_lab: Lab, session: Json
     refusal = error(request_avatar(fresh_lab, token, wrong), 422, "invalid_input")
     assert "thigh" in refusal["message"]
     assert refusal["value"] == {"stature_m": 1.7, "thigh": 2.9}
+    for no_number in ({"stature_m": True}, {"stature_m": "1.75"}):
+        error(request_avatar(fresh_lab, token, no_number), 422, "invalid_input")
 
 
 @pytest.mark.one_engine

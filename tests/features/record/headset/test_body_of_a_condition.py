@@ -78,6 +78,11 @@ def test_the_avatar_of_a_named_body_is_built_and_recorded(
     ]
     wrong = request_avatar(fresh_lab, token, {"stature_m": 1.7, "body": "fifth"})
     assert error(wrong, 422, "invalid_input")["valid"] == ["five", "four"]
+    # A body with a model of its own uses no measured lengths, and yet refuses impossible ones.
+    for segments_m in ({"tail": 0.1}, {"thigh": 0.0001}):
+        wish = {"stature_m": 1.7, "body": "five", "segments_m": segments_m}
+        refusal = error(request_avatar(fresh_lab, token, wish), 422, "invalid_input")
+        assert next(iter(segments_m)) in refusal["message"]
 
 
 @pytest.mark.one_engine
@@ -86,7 +91,8 @@ def test_a_headset_fetches_the_bodies_of_its_own_session_only(
 ) -> None:
     """A headset gets file and binding of every body that its study names, in any order.
 
-    A body of no condition, and one asked for by a headset of another study, are not found.
+    A body of no condition, and one asked for by a headset of another study, are not found. The
+    session's tablet gets none.
     """
     view: Json = ok(fresh_lab.operator.post(f"/api/studies/{KEY}/sessions", json={"kind": "test"}))
     headset = bearing(fresh_lab, view["id"])
@@ -97,6 +103,9 @@ def test_a_headset_fetches_the_bodies_of_its_own_session_only(
         own = ok(headset.get(f"/api/vr/bodies/{hashes[name]}/binding"))
         assert own == ok(fresh_lab.operator.get(f"/api/humanoids/{hashes[name]}/binding"))
     error(headset.get(f"/api/vr/bodies/{'0' * 64}/file"), 404, "not_found")
+    tablet = fresh_lab.tablet(view["id"])
+    error(tablet.get(f"/api/vr/bodies/{hashes['four']}/file"), 401, "not_signed_in")
+    error(tablet.post("/api/vr/avatar", json={"stature_m": 1.7}), 401, "not_signed_in")
     other = bearing(fresh_lab, fresh_lab.join()["id"])
     for what in ("file", "binding"):
         error(other.get(f"/api/vr/bodies/{hashes['four']}/{what}"), 404, "not_found")

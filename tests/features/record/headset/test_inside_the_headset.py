@@ -2,7 +2,7 @@
 
 from sqlalchemy import select
 
-from app.models import ClientReport, Phase
+from app.models import AlarmRow, ClientReport, Phase
 from tests.features.lab import Json, error, ok
 from tests.features.record.headset.site import Headset, Site
 from tests.wire.message_vectors import ADDED_LATENCY, CALIBRATION, GOALS
@@ -48,6 +48,8 @@ def test_a_foot_task_needs_measured_feet(site: Site) -> None:
     session_id = site.join()
     site.skip_to(session_id, "block1.foot")
     with site.headset(site.token(session_id), **ABLE) as headset:
+        panel = headset.welcome["state"]["panel"]
+        assert (panel["limb"], set(panel["screen_texts"])) == ("foot", {"freeze", "walk_back"})
         assert feet(site, session_id)["code"] == "feet.waiting"
         headset.reported(**GOALS)
         assert (feet(site, session_id)["code"], feet(site, session_id)["status"]) == (
@@ -171,3 +173,75 @@ def test_added_latency_belongs_to_a_phase(site: Site) -> None:
         rows = list(db.scalars(select(ClientReport).where(own).order_by(ClientReport.seq)))
         assert db.get(Phase, (session_id, phase_id)) is not None
     assert [row.accepted for row in rows if row.type == "added_latency"] == [True, False]
+
+
+def refusals(site: Site, session_id: str) -> list[str]:
+    """Return why the session's reports were refused, in their order."""
+    own = (ClientReport.session_id == session_id, ~ClientReport.accepted)
+    with site.database.reading() as db:
+        return list(map(str, db.scalars(select(ClientReport.refusal).where(*own).order_by("seq"))))
+
+
+def test_a_calibration_that_measured_nobody_is_refused(site: Site) -> None:
+    """Lengths of nobody, and what is no rotation, are stored as refused and shown nowhere."""
+    session_id = site.join()
+    pose = {"position_m": [0.0, 0.1, 0.0], "rotation": [0.0, 0.0, 0.0, 0.0]}
+    impossible: list[Json] = [
+        {"span_m": 9.0},
+        {"eye_height_m": 0.0},
+        {"tracker_from_goal": {"Head": pose}},
+    ]
+    with site.headset(site.token(session_id), **ABLE) as headset:
+        for one in impossible:
+            headset.reported(**{**CALIBRATION, **one})
+        assert site.view(session_id)["calibration"] is None
+        headset.reported(**{**CALIBRATION, "stature_m": 0.5})
+    assert [one.split()[0].partition(".")[0] for one in refusals(site, session_id)] == [
+        *("span_m", "eye_height_m", "tracker_from_goal"),
+    ]
+    assert site.view(session_id)["calibration"]["stature_m"] == 0.5
+
+
+def test_reports_that_contradict_order_or_run_are_refused(site: Site) -> None:
+    """What cannot be taken off the ordered delay, and goals of frames out of order, are refused.
+
+    One that was refused spoils nothing: the next goals of the run are taken.
+    """
+    session_id = site.join()
+    site.skip_to(session_id, "free_roam")
+    with site.headset(site.token(session_id), **ABLE) as headset:
+        phase_id = running(site, session_id, headset)
+        taken_off = {"phase_id": phase_id, "added_s": 0.5, "compensated_s": 0.5}
+        headset.reported(**{**ADDED_LATENCY, **taken_off})
+        for frame_seq in (2**52, 90, 10, 90, 91):
+            headset.reported(**{**GOALS, "frame_seq": frame_seq})
+    delay, ahead, back = refusals(site, session_id)
+    assert "cannot be taken off the 0 ms" in delay
+    assert "frames in" in ahead
+    assert "from frame 90 on are reported already" in back
+
+
+def test_calls_that_are_taken_back_again_and_again_stay_open(site: Site) -> None:
+    """A hundred calls in a moment make a few alarms; the last call stays open until somebody comes.
+
+    No call is refused, and afterwards the participant can call again.
+    """
+    session_id = site.join()
+    site.skip_to(session_id, "free_roam")
+    with site.headset(site.token(session_id), **ABLE) as headset:
+        for _ in range(33):
+            for what in ("stop", "help", "taken_back"):
+                headset.report(kind="call", t_s=2.0, what=what)
+        headset.acknowledged("reports", headset.next_report)
+        assert sorted(codes(site, session_id)) == ["help_asked", "stop_asked"]
+        with site.database.reading() as db:
+            rows = select(AlarmRow).where(AlarmRow.session_id == session_id)
+            raised = [row.code for row in db.scalars(rows) if row.state == "raised"]
+        assert len(raised) <= 6
+        assert {one.split(",")[0] for one in refusals(site, session_id)} == {
+            "the participant called several times within a minute"
+        }
+        ok(site.operator.post(f"/api/sessions/{session_id}/help/answered"))
+        assert codes(site, session_id) == []
+        headset.reported(kind="call", t_s=5.0, what="stop")
+        assert codes(site, session_id) == ["stop_asked"]

@@ -7,7 +7,7 @@ from sqlalchemy import select
 
 from app.models import ClientReport, Completion, Contact, JointErrorRow, Phase, StudySession
 from app.wire import BODY_STREAMS
-from tests.features.lab import Json
+from tests.features.lab import STUDY, Json, ok
 from tests.features.record.headset.site import Headset, Site
 from tests.wire.samples import CONTACT_REPORT, message, standing
 
@@ -62,6 +62,49 @@ def test_contacts_and_completions_of_a_phase_are_counted(site: Site) -> None:
     (phase,) = site.view(session_id)["phases"]
     assert (phase["side_contacts"], phase["side_contact_s"]) == (1, 1.0)
     assert phase["completions"] == 1
+
+
+@pytest.mark.one_engine
+def test_a_blinded_reader_gets_no_count_that_rises_while_a_phase_runs(site: Site) -> None:
+    """A count that rises tells when the avatar arrived, so it is hidden until the phase has ended.
+
+    Neither the cockpit's view nor the size of the stream of reports tells it, nor the receipt.
+    """
+    yaml = ok(site.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    blinded = yaml.replace("operator: false", "operator: true")
+    blinded = blinded.replace(f"key: {STUDY}", "key: blinded-counts", 1)
+    ok(site.operator.post("/api/studies", json={"yaml": blinded}))
+    made = site.operator.post("/api/studies/blinded-counts/sessions", json={})
+    session_id = str(ok(made)["id"])
+    site.skip_to(session_id, "free_roam")
+    token = site.token(session_id)
+    counts = ("completions", "side_contacts", "side_contact_s")
+
+    def seen() -> tuple[Json, set[str]]:
+        stored = ok(site.operator.get(f"/api/sessions/{session_id}/streams"))
+        receipt = ok(site.operator.get(f"/api/sessions/{session_id}/receipt"))
+        told = [one for one in receipt["problems"] if "reports" in one]
+        names = {one["stream"] for one in (*stored, *receipt["streams"])}
+        return site.view(session_id)["phases"][0], names.union(told)
+
+    with site.headset(token) as headset:
+        phase_id = begin(site, session_id, headset)
+        headset.reported(**CONTACT_REPORT, phase_id=phase_id)
+        headset.reported(**COMPLETION, phase_id=phase_id)
+        view = site.view(session_id)
+        duration_s = view["steps"][view["current"]["index"]]["duration_s"]
+        phase, streams = seen()
+        assert [phase[name] for name in counts] == [None, None, None]
+        assert "reports" not in streams
+        headset.reported(
+            kind="phase", phase_id=phase_id, what="time_up", t_s=131.0, active_s=duration_s
+        )
+        headset.reported(
+            kind="phase", phase_id=phase_id, what="ended", t_s=136.0, active_s=duration_s
+        )
+    phase, streams = seen()
+    assert [phase[name] for name in counts] == [1, 1, 1.0]
+    assert "reports" in streams
 
 
 @pytest.mark.one_engine

@@ -119,6 +119,22 @@ def test_the_headset_receives_every_change_of_state(site: Site) -> None:
         headset.hear("state", lambda state: state["phase"]["status"] == "running")
 
 
+def test_the_state_that_includes_a_report_comes_before_its_acknowledgement(site: Site) -> None:
+    """A client whose reports are all acknowledged has a state that includes every one of them."""
+    session_id, token = running(site)
+    with site.headset(token) as headset:
+        site.command(session_id, "begin_phase")
+        state = headset.hear("state", lambda state: state["phase"] is not None)
+        clock = {"kind": "phase", "phase_id": state["phase"]["phase_id"]}
+        for turn in range(12):
+            what, status = ("started" if turn == 0 else "resumed"), "running"
+            if turn % 2 == 1:
+                what, status = "paused", "paused"
+            headset.reported(**clock, what=what, t_s=1.0 + turn, active_s=turn // 2)
+            newest = [one for one in headset.heard if one["type"] == "state"][-1]
+            assert newest["phase"]["status"] == status
+
+
 def test_unpairing_a_headset_closes_its_socket(site: Site) -> None:
     """Unpairing a headset closes its socket with 4401."""
     session_id = site.join()
@@ -128,3 +144,26 @@ def test_unpairing_a_headset_closes_its_socket(site: Site) -> None:
         site.operator.delete(f"/api/sessions/{session_id}/devices/{device['id']}")
         last, code = closing(headset.socket)
     assert (last["code"], code) == ("not_signed_in", 4401)
+
+
+@pytest.mark.one_engine
+def test_a_newer_page_takes_over_from_an_older_one(site: Site) -> None:
+    """The page that connects last records the phase alone; the older one is told why it is closed.
+
+    The phase runs on, because the headset is never gone.
+    """
+    session_id, token = running(site)
+    with site.headset(token) as older:
+        site.command(session_id, "begin_phase")
+        state = older.hear("state", lambda state: state["phase"] is not None)
+        phase_id = state["phase"]["phase_id"]
+        older.reported(kind="phase", phase_id=phase_id, what="started", t_s=1, active_s=0)
+        with site.headset(token) as newer:
+            last, code = closing(older.socket)
+            assert (last["type"], last["code"], code) == ("error", "taken_over", 4400)
+            assert newer.welcome["state"]["phase"]["status"] == "running"
+            newer.report(kind="call", t_s=2.0, what="help")
+            newer.acknowledged("reports", 1)
+            view = site.view(session_id)
+            assert view["current"]["status"] == "running"
+            assert [one["connected"] for one in view["devices"]] == [True]

@@ -8,6 +8,7 @@ import pytest
 from numpy.typing import NDArray
 from sqlalchemy import func, select
 
+from app.features.record.doubts import doubts_of
 from app.features.record.telemetry.encoding import Frames
 from app.features.record.telemetry.frames import concatenate, iter_frames
 from app.models import ClockProbe, TelemetryBatch, TelemetryChunk
@@ -147,12 +148,13 @@ def test_each_run_of_the_client_has_its_own_epoch(site: Site) -> None:
     """Each run of the client gets its own epoch, so that frames of two runs never mix."""
     session_id = site.join()
     token = site.token(session_id)
-    with site.headset(token) as first, site.headset(token) as second:
-        assert (first.epoch, second.epoch) == (1, 2)
-        second.say(message(numbered(100, 5), epoch=2))
-        second.acknowledged("target", 5)
+    with site.headset(token) as first:
         first.say(message(numbered(0, 5), epoch=1))
         first.acknowledged("target", 5)
+        with site.headset(token) as second:
+            assert (first.epoch, second.epoch) == (1, 2)
+            second.say(message(numbered(100, 5), epoch=2))
+            second.acknowledged("target", 5)
     assert stored(site, session_id, epoch=1).values[0, 1] == 0
     assert stored(site, session_id, epoch=2).values[0, 1] == 100
 
@@ -171,6 +173,22 @@ def test_late_frames_of_an_earlier_run_are_stored(site: Site) -> None:
 
 
 @pytest.mark.one_engine
+def test_frames_of_a_phase_that_does_not_exist_are_doubted(site: Site) -> None:
+    """Frames of an unknown phase are stored as received, and put the session in doubt once."""
+    session_id = site.join()
+    with site.headset(site.token(session_id)) as headset:
+        headset.say(message(numbered(0, 9), seq_first=0))
+        headset.acknowledged("target", 9)
+        assert site.view(session_id)["alarms"] == []
+        for first in (9, 18):
+            headset.say(message(numbered(first, 9), seq_first=first, phase_id=99))
+        headset.acknowledged("target", 27)
+    with site.database.reading() as db:
+        doubts = doubts_of(db, session_id)
+    assert [(one.kind, "phase 99" in one.words) for one in doubts] == [("observed", True)]
+    assert stored(site, session_id).seq.tolist() == list(range(27))
+
+
 def test_an_epoch_that_was_not_assigned_is_refused(site: Site) -> None:
     """A batch with an epoch that was not assigned is refused with the reason."""
     session_id = site.join()

@@ -3,9 +3,13 @@
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
+from sqlalchemy import event
 
+from app.features.record.ledger.endpoints import get_ledger
+from app.platform.access import Caller
 from tests.features.lab import STUDY, Json, Lab, error, ok
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
@@ -74,6 +78,28 @@ def test_a_freed_slot_is_the_next_to_be_taken(fresh_lab: Lab, end: str, outcome:
     outcomes = [attempt["outcome"] for attempt in slot["attempts"]]
     assert (slot["state"], outcomes) == ("open", [outcome, "open"])
     assert slot["attempts"][0]["reason"] == "headset broke"
+
+
+@pytest.mark.one_engine
+def test_a_longer_ledger_needs_no_more_statements(fresh_lab: Lab) -> None:
+    """The ledger takes as many SQL statements for five aborted sessions as for one."""
+    admin = Caller("1", "admin", "admin")
+
+    def needed(sessions: int) -> int:
+        for _ in range(sessions):
+            view = fresh_lab.command(fresh_lab.join(), "start")
+            fresh_lab.command(view, "abort", reason="headset broke")
+        sent: list[str] = []
+
+        def note(_connection: Any, _cursor: Any, text: str, *_: Any) -> None:
+            sent.append(text)
+
+        with fresh_lab.database.reading() as db:
+            event.listen(db.connection(), "before_cursor_execute", note)
+            get_ledger(STUDY, db, admin)
+        return len(sent)
+
+    assert needed(1) == needed(4) > 0
 
 
 @pytest.mark.one_engine

@@ -13,7 +13,9 @@ from starlette.websockets import WebSocketDisconnect
 from app.features.movement.avatar import SHIPPED, configuration_by_hash, version_of
 from app.features.record.headset.poses import HEADER, PoseFeed
 from app.features.record.poses.endpoints import MAX_UNDRAWN
+from app.features.record.sessions import CALIBRATION, store_content
 from app.models import StudySession
+from app.science.rotations import FloatArray
 from app.science.skeleton import JOINT_NAMES, build_skeleton
 from app.wire import FINGER_STREAMS, Batch, StreamName, decode_batch
 from tests.features.builders import as_physics
@@ -22,6 +24,7 @@ from tests.features.record.poses.test_feed import contact
 from tests.wire.samples import message, resting_fingers, standing
 
 PATIENCE_S = 10.0
+STATURE_M = 1.81
 
 
 @contextmanager
@@ -79,6 +82,52 @@ def test_a_console_receives_the_body_and_the_tasks_surfaces(lab: Lab) -> None:
         kinds = [surface["kind"] for surface in setup["surfaces"]]
         assert {"panel", "side", "target"} == set(kinds)
         assert all(surface["key"].startswith("hand/") for surface in setup["surfaces"])
+
+
+@pytest.mark.one_engine
+def test_a_plain_body_is_drawn_with_the_arms_that_were_measured_last(lab: Lab) -> None:
+    """The live figures' arms are the newest calibration's; lengths that no body has are left out.
+
+    The stature stays then. A body with a model keeps its own proportions.
+    """
+    view = lab.skip_to(lab.join(), "height")
+    lab.command(view, "complete_step", height_m={"stated": 1.8, "matched": STATURE_M})
+    session_id = str(view["id"])
+    usual_m = arm_lengths_m(build_skeleton(STATURE_M).offsets_m)
+    measured = {"upper_arm": 0.31, "forearm": 0.25}
+    shown = [drawn_arms_m(lab, session_id)]
+    for segments_m in ({"upper_arm": 0.4}, measured, {"upper_arm": 50.0}, measured):
+        with lab.database.writing() as db:
+            store_content(
+                db,
+                session_id=session_id,
+                kind=CALIBRATION,
+                body={"segments_m": segments_m},
+                by="headset",
+                now=lab.context.clock.utc_now(),
+            )
+        shown.append(drawn_arms_m(lab, session_id))
+    expected = [usual_m, (0.4, usual_m[1]), (0.31, 0.25), usual_m, (0.31, 0.25)]
+    np.testing.assert_allclose(shown, expected)
+    with lab.database.writing() as db:
+        as_physics(db, db.get_one(StudySession, session_id))
+    np.testing.assert_allclose(drawn_arms_m(lab, session_id), usual_m)
+
+
+def drawn_arms_m(lab: Lab, session_id: str) -> tuple[float, float]:
+    """Return the lengths of upper arm and forearm that a console is told to draw."""
+    with watching(lab, session_id) as socket:
+        return arm_lengths_m(np.array(socket.receive_json()["offsets_m"]))
+
+
+def arm_lengths_m(offsets_m: FloatArray) -> tuple[float, float]:
+    """Return the lengths of the left upper arm and forearm, which are the right ones', too."""
+    left, right = (
+        [np.linalg.norm(offsets_m[JOINT_NAMES.index(side + part)]) for part in ("LowerArm", "Hand")]
+        for side in ("Left", "Right")
+    )
+    np.testing.assert_allclose(left, right)
+    return float(left[0]), float(left[1])
 
 
 @pytest.mark.one_engine

@@ -1,14 +1,18 @@
 """Tests of forms that are answered inside the headset, or aloud, instead of on the tablet."""
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
 from app.protocol import compile_plan
+from app.rehearsal.answers import fill_in
+from app.rehearsal.body import make_person
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.record.questionnaires.forms import ANSWERS, FORM, filled, send
 from tests.protocol.helpers import STUDY, edited, loaded
 
 KEY = "answered-elsewhere"
+RNG = np.random.default_rng(3)
 IN_PHASE = "questionnaire: karas2020"
 
 
@@ -75,6 +79,35 @@ def test_a_form_that_is_read_aloud_is_entered_by_the_operator(fresh_lab: Lab) ->
     path = f"/api/sessions/{view['id']}/submissions"
     ok(fresh_lab.operator.post(path, json=filled(form, ANSWERS)))
     assert fresh_lab.view(view["id"])["scores"][0]["mode"] == "operator"
+
+
+@pytest.mark.one_engine
+def test_a_text_said_aloud_in_the_headset_is_entered_later(fresh_lab: Lab) -> None:
+    """In a headset nobody can type: a required text may be missing, and is entered afterwards."""
+    asked = "- {step: form, instrument: demographics"
+    text = edited(
+        ("key: reembodiment-latency", f"key: {KEY}-spoken"), (asked, f"{asked}, forms: headset")
+    )
+    ok(fresh_lab.operator.post("/api/studies", json={"yaml": text}))
+    path = f"/api/studies/{KEY}-spoken/sessions"
+    view = fresh_lab.skip_to(ok(fresh_lab.operator.post(path, json={})), "form.demographics")
+    headset = bearing(fresh_lab, view["id"])
+    form = ok(headset.get("/api/vr/form"))
+    required = [one for one in form["instrument"]["items"] if one.get("required", True)]
+    assert "occupation" in [one["key"] for one in required]
+    answers = fill_in(form["instrument"], make_person(RNG, None), 0.0, "hand", RNG)
+    missing = filled(form, {**answers, "occupation": None, "age": None})
+    refused = error(headset.post("/api/vr/submissions", json=missing), 422, "invalid_input")
+    assert refused["value"] == ["age"]
+    spoken = filled(form, {**answers, "occupation": None})
+    ok(headset.post("/api/vr/submissions", json=spoken))
+    (stored,) = ok(fresh_lab.operator.get(f"/api/sessions/{view['id']}/answers"))
+    assert stored["answers"]["occupation"] is None
+    correction = {"item": "occupation", "value": "a baker", "reason": "said aloud"}
+    path = f"/api/sessions/{view['id']}/submissions/{stored['submission_id']}/corrections"
+    ok(fresh_lab.operator.post(path, json=correction))
+    (stored,) = ok(fresh_lab.operator.get(f"/api/sessions/{view['id']}/answers"))
+    assert stored["answers"]["occupation"] == "a baker"
 
 
 @pytest.mark.one_engine

@@ -30,10 +30,10 @@ class StoredSession:
         with self.database.writing() as db:
             act(db)
 
-    def receipt(self) -> SessionReceipt:
-        """Return the current receipt of the session."""
+    def receipt(self, *, blinded: bool = False) -> SessionReceipt:
+        """Return the current receipt of the session, as blinded readers see it if they ask."""
         with self.database.reading() as db:
-            return receipt_of(db, self.session_id)
+            return receipt_of(db, self.session_id, blinded=blinded)
 
     def stream(self, name: str = "target", epoch: int = 1) -> StreamReceipt:
         """Return one stream of the current receipt."""

@@ -1,18 +1,21 @@
 """Tests of a receipt's verdict, over HTTP and as text."""
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sqlalchemy import delete, update
+from sqlalchemy.orm import Session
 
 from app.features.record.receipts.service import receipt_text
 from app.features.record.telemetry import assign_epoch
-from app.models import Phase, SessionEvent, TelemetryChunk
-from app.wire import StreamName
+from app.models import ClientReport, Phase, SessionEvent, TelemetryChunk, TelemetryStream
+from app.wire import BODY_STREAMS, StreamName
 from tests.features.builders import NOW
 from tests.features.lab import Lab, ok
+from tests.features.latency_builders import measured
 from tests.features.movement_builders import moving_values, store_chunks
 from tests.features.record.receipts.conftest import StoredSession
 from tests.wire.samples import resting_fingers
@@ -56,7 +59,9 @@ def test_announced_fingers_that_are_missing_are_reported(stored: StoredSession) 
         )
 
     assert problems() == []
-    stored.change(lambda db: assign_epoch(db, stored.session_id, NOW, fingers=True))
+    stored.change(
+        lambda db: assign_epoch(db, stored.session_id, NOW, abilities=frozenset({"fingers"}))
+    )
     # The runs that moved in the phases have announced nothing.
     assert problems() == []
     assert "actual_fingers       3         0         0        0" in receipt_text(stored.receipt())
@@ -65,6 +70,98 @@ def test_announced_fingers_that_are_missing_are_reported(stored: StoredSession) 
     (missing,) = problems()
     announced = "no frames of the actual fingers, which the headset announced"
     assert missing == f"phase 2, epoch 3: {announced}"
+
+
+@pytest.mark.one_engine
+def test_goals_that_were_announced_and_never_reported_are_a_gap(stored: StoredSession) -> None:
+    """A run that announced reports of its goals and moved in a phase without any is named."""
+
+    def problems() -> list[str]:
+        return [one for one in stored.receipt().problems if "goals" in one]
+
+    told = frozenset({"goals"})
+    stored.change(lambda db: assign_epoch(db, stored.session_id, NOW, abilities=told))
+    # It has not moved in a phase yet.
+    assert problems() == []
+    values = moving_values(9, 1)
+    stored.change(
+        lambda db: store_chunks(
+            db, stored.session_id, StreamName.TARGET, range(9), values, epoch=3, phase_id=2
+        )
+    )
+    gap = "no report of how the goals of the body are known, which the headset announced"
+    assert problems() == [f"phase 2, epoch 3: {gap}"]
+    store_report(stored, 0, {"kind": "goals"}, accepted=False)
+    assert problems() == [f"phase 2, epoch 3: {gap}"]
+    store_report(stored, 1, {"kind": "goals"}, accepted=True)
+    assert problems() == []
+
+
+def store_report(
+    stored: StoredSession, seq: int, payload: dict[str, Any], *, accepted: bool
+) -> None:
+    """Store a report of epoch 3 as the server had accepted or refused it."""
+    row = ClientReport(
+        session_id=stored.session_id,
+        epoch=3,
+        seq=seq,
+        type=payload["kind"],
+        payload=payload,
+        accepted=accepted,
+        refusal=None if accepted else "it cannot be",
+        received_at=NOW,
+    )
+    stored.change(lambda db: db.add(row))
+
+
+@pytest.mark.one_engine
+def test_a_refused_report_of_added_latency_does_not_count(stored: StoredSession) -> None:
+    """The receipt has the most that accepted reports added, whatever a refused one says."""
+
+    def added() -> tuple[float | None, float | None]:
+        (one,) = stored.receipt().achieved_latency
+        return one.headset_added_ms, one.headset_compensated_ms
+
+    stored.change(
+        lambda db: db.add(measured(db.get_one(Phase, (stored.session_id, 2)), achieved_s=0.1))
+    )
+    report = {"kind": "added_latency", "phase_id": 2, "added_s": 1.0, "compensated_s": 0.9}
+    store_report(stored, 0, report, accepted=False)
+    assert added() == (None, None)
+    believed = {**report, "added_s": 0.02, "compensated_s": 0.0}
+    store_report(stored, 1, believed, accepted=True)
+    assert added() == (20.0, 0.0)
+
+
+@pytest.mark.one_engine
+def test_a_blinded_receipt_does_not_tell_a_copy_without_delay(stored: StoredSession) -> None:
+    """Where the avatar's frames are the participant's own, a blinded reader cannot see it."""
+    same = moving_values(50, 3)
+
+    def store(db: Session) -> None:
+        for stream in BODY_STREAMS:
+            store_chunks(db, stored.session_id, stream, range(50), same, epoch=3)
+
+    stored.change(store)
+    receipt = stored.receipt()
+    assert len({one.sha256 for one in receipt.streams if one.epoch == 3}) == 1
+    shown = stored.receipt(blinded=True)
+    assert {one.stream for one in shown.streams if one.sha256 is not None} == {"target"}
+    hashes = [one.sha256 for one in shown.streams if one.sha256 is not None]
+    assert len(set(hashes)) == len(hashes) == 3
+    assert [(one.stream, one.stored, one.missing) for one in shown.streams] == [
+        (one.stream, one.stored, one.missing) for one in receipt.streams
+    ]
+
+
+@pytest.mark.one_engine
+def test_a_blinded_receipt_does_not_tell_how_often_the_avatar_failed(stored: StoredSession) -> None:
+    """Flagged frames are counted for blinded readers only where they are the participant's own."""
+    stored.change(lambda db: db.execute(update(TelemetryStream).values(frames_flagged=7)))
+    assert {one.flagged for one in stored.receipt().streams} == {7}
+    shown = stored.receipt(blinded=True)
+    assert {(one.stream, one.flagged) for one in shown.streams} == {("target", 7), ("actual", None)}
+    assert "actual         1       400       400        0        -" in receipt_text(shown)
 
 
 @pytest.mark.one_engine

@@ -1,16 +1,24 @@
 """Tests of changes to a running avatar, from the operator's command and the study to the record."""
 
+import csv
+import io
 import json
+import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 import pytest
+from sqlalchemy import select
 from starlette.testclient import WebSocketTestSession
 
 from app.features.record.receipts import receipt_of, receipt_text
+from app.features.record.sessions import ReportAvatarChange, apply_command
 from app.features.results.analysis.tables import phases_table
+from app.models import ClientReport
+from app.platform.access import session_by_id
+from tests.api.people import sign_in
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.avatar.test_avatars import new
 from tests.features.movement.avatar.test_studies import KEY, study
@@ -70,10 +78,12 @@ def wearing(lab: Lab, token: str, **hello: Any) -> Iterator[Wearer]:
         yield Wearer(socket, socket.receive_json())
 
 
-def joined(lab: Lab, *, cast: bool = False) -> Json:
+def joined(lab: Lab, *, cast: bool = False, blinded: bool = False) -> Json:
     """Join a study with a physics avatar, which has a cast in the phase of the feet or none."""
     new(lab, "soft")
     text = study("{key: soft, version: 1}")
+    if blinded:
+        text = text.replace("operator: false", "operator: true")
     if cast:
         feet = "      - limb: foot"
         assert text.count(feet) == 1
@@ -140,7 +150,8 @@ def test_a_cast_keeps_its_angles_when_the_headset_starts_anew(fresh_lab: Lab) ->
         wearer.report(kind="avatar_changes", **told)
     with wearing(fresh_lab, token) as again:
         assert again.welcome["state"]["avatar_changes"]["held_rad"] == held
-    assert "1.5" not in json.dumps(of_type(fresh_lab, view["id"], "avatar_change_reported"))
+    (reported,) = of_type(fresh_lab, view["id"], "avatar_change_reported")
+    assert "1.5" not in json.dumps(reported["data"])
 
 
 def test_the_studys_cast_lasts_as_long_as_its_phase(fresh_lab: Lab) -> None:
@@ -173,7 +184,7 @@ def test_the_studys_cast_lasts_as_long_as_its_phase(fresh_lab: Lab) -> None:
         after = wearer.hear(lambda one: one["type"] == "state" and one["phase"] is None)
         assert after["avatar_changes"]["held_rad"] == {}
         assert after["avatar_changes"]["revision"] > told["revision"]
-        view = fresh_lab.command(view, "change_avatar")
+        view = fresh_lab.command(view, "change_avatar", avatar_changes={})
         assert of_type(fresh_lab, view["id"], "avatar_changed")[-1]["data"]["changes"] == {}
     with fresh_lab.database.reading() as db:
         phases = phases_table(db, KEY, "test")
@@ -213,6 +224,27 @@ def test_a_report_confirms_the_changes_before_it(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
+def test_the_event_of_a_report_does_not_show_which_parts_a_body_has(fresh_lab: Lab) -> None:
+    """A report without a held axis, of a body that lacks the part, leaves an event of one shape."""
+    view = joined(fresh_lab)
+    with wearing(fresh_lab, fresh_lab.headset_token(view["id"])) as wearer:
+        view = in_the_body(fresh_lab, view, wearer)
+        for part, held_rad in (("LeftHand", {}), ("RightHand", {"RightHandX": 0.2})):
+            now = fresh_lab.view(view["id"])
+            changes = {"casts": [{"group": part}]}
+            done = fresh_lab.command(now, "change_avatar", avatar_changes=changes)
+            revision = int(done["version"])
+            said = {"revision": revision, "t_s": 9.0, "applied": True, "held_rad": held_rad}
+            wearer.report(kind="avatar_changes", **said)
+    log = fresh_lab.events(view["id"])
+    told = [one["data"] for one in log if one["type"] == "avatar_change_reported"]
+    assert len(told) == 2
+    assert {(one["content_id"] is None, one["content_hash"] is None) for one in told} == {
+        (False, False)
+    }
+
+
+@pytest.mark.one_engine
 def test_a_change_is_refused_where_it_could_not_take_effect(fresh_lab: Lab) -> None:
     """A change is refused before the body appears, by a headset that cannot, and if outdated."""
     view = joined(fresh_lab)
@@ -228,7 +260,7 @@ def test_a_change_is_refused_where_it_could_not_take_effect(fresh_lab: Lab) -> N
     with wearing(fresh_lab, token, changes_avatar=False) as wearer:
         in_the_body(fresh_lab, fresh_lab.view(view["id"]), wearer)
         assert refused() == "changes_avatar: false"
-    outdated = fresh_lab.try_command({**view, "version": 1}, "change_avatar")
+    outdated = fresh_lab.try_command({**view, "version": 1}, "change_avatar", avatar_changes={})
     error(outdated, 409, "stale")
 
 
@@ -259,7 +291,7 @@ def test_a_client_that_cannot_change_its_avatar_is_refused_while_it_is_changed(
         assert unable.welcome["type"] == "error"
         assert "an operator has changed the avatar" in unable.welcome["message"]
         assert "take the change back" in unable.welcome["remedy"]
-    view = fresh_lab.command(fresh_lab.view(view["id"]), "change_avatar")
+    view = fresh_lab.command(fresh_lab.view(view["id"]), "change_avatar", avatar_changes={})
     with wearing(fresh_lab, token, changes_avatar=False) as unable:
         assert unable.welcome["type"] == "welcome"
         assert "avatar_changes" not in unable.welcome["state"]
@@ -279,7 +311,7 @@ def test_changes_are_taken_back_whatever_the_headset_can_do(fresh_lab: Lab) -> N
         view = fresh_lab.view(view["id"])
         reply = fresh_lab.try_command(view, "change_avatar", avatar_changes=NO_GRAVITY)
         assert error(reply, 409, "not_now")["value"] == "changes_avatar: false"
-        fresh_lab.command(view, "change_avatar")
+        fresh_lab.command(view, "change_avatar", avatar_changes={})
     assert of_type(fresh_lab, view["id"], "avatar_changed")[-1]["data"]["changes"] == {}
 
 
@@ -303,3 +335,107 @@ def test_a_change_that_the_avatar_cannot_have_is_refused(
     assert said in refusal["message"]
     assert refusal["valid"]
     assert of_type(fresh_lab, view["id"], "avatar_changed") == []
+
+
+@pytest.mark.one_engine
+def test_a_report_on_a_change_does_not_tell_a_blinded_reader_which_body_is_worn(
+    fresh_lab: Lab,
+) -> None:
+    """A blinded reader sees the same of a report whether or not the body has the part in the cast.
+
+    The headset's words, which may name the body, reach nobody who must not know it: not in the
+    cockpit, the event log, an export or a participant's own copy. Reports of earlier releases,
+    which had content only with angles, tell nothing either.
+    """
+    view = joined(fresh_lab, blinded=True)
+    cast = {"casts": [{"group": "LeftLowerArm"}]}
+    said = "the body of the author has no LeftLowerArm"
+    readers = {role: sign_in(fresh_lab, role) for role in ("operator", "experimenter")}
+    with wearing(fresh_lab, fresh_lab.headset_token(view["id"])) as wearer:
+        view = in_the_body(fresh_lab, view, wearer)
+        held = {"LeftLowerArmX": 0.1}
+        for changes, told in (
+            (cast, {"applied": True, "held_rad": held}),
+            (NO_GRAVITY, {"applied": True}),
+            (cast, {"applied": False, "problem": said}),
+        ):
+            view = fresh_lab.command(view, "change_avatar", avatar_changes=changes)
+            wearer.report(kind="avatar_changes", revision=view["version"], t_s=7.0, **told)
+            view = fresh_lab.view(view["id"])
+        # The body changes, and a headset that does not know better reports the change again.
+        revision = view["avatar_changes"]["revision"]
+        for _ in range(2):
+            wearer.report(kind="avatar_changes", revision=revision, t_s=9.0, applied=True)
+    with fresh_lab.database.writing() as db:
+        row = session_by_id(db, view["id"], lock=True)
+        report = ReportAvatarChange(revision=revision, applied=False, client_t_s=10.0)
+        apply_command(db, fresh_lab.context, row, report, actor="headset")
+    for role, client in readers.items():
+        events = ok(client.get(f"/api/sessions/{view['id']}/events"))
+        reports = [one["data"] for one in events if one["type"] == "avatar_change_reported"]
+        assert len(reports) == 5
+        assert {tuple(sorted(one)) for one in reports} == {("applied", "client_t_s", "revision")}
+        shown = client.get(f"/api/sessions/{view['id']}")
+        assert (shown.json()["avatar_changes"]["applied"], said in shown.text) == (False, False), (
+            role
+        )
+    analyst = readers["experimenter"]
+    exported = zipfile.ZipFile(
+        io.BytesIO(analyst.get(f"/api/studies/{KEY}/export?kind=test").content)
+    )
+    with exported.open("events.csv") as file:
+        rows = list(csv.DictReader(io.TextIOWrapper(file)))
+    payloads = [
+        json.loads(one["payload"]) for one in rows if one["type"] == "avatar_change_reported"
+    ]
+    assert len(payloads) == 5
+    assert not {"content_id", "content_hash"} & {name for one in payloads for name in one}
+    with fresh_lab.database.reading() as db:
+        person = session_by_id(db, view["id"]).participant_id
+    path = f"/api/studies/{KEY}/participants/{person}/access"
+    own = zipfile.ZipFile(io.BytesIO(analyst.get(path).content)).read("words.json").decode()
+    assert '"reason"' in own
+    assert "LeftLowerArm" not in own
+
+
+@pytest.mark.one_engine
+@pytest.mark.parametrize(
+    ("told", "said"),
+    [
+        ({"revision": 0, "applied": True}, "revision 0"),
+        ({"applied": True, "problem": "it did not work"}, "cannot have been applied"),
+        ({"applied": True, "held_rad": {"Nose": 1.0}}, "the axis Nose"),
+        ({"applied": True, "held_rad": {"RightLowerArmX": 1.0}}, "the axis RightLowerArmX"),
+    ],
+)
+def test_a_report_that_contradicts_the_changes_is_refused(
+    fresh_lab: Lab, told: Json, said: str
+) -> None:
+    """A report of no revision, or that contradicts itself or the cast, is stored as refused."""
+    view = joined(fresh_lab)
+    with wearing(fresh_lab, fresh_lab.headset_token(view["id"])) as wearer:
+        view = in_the_body(fresh_lab, view, wearer)
+        cast = {"casts": [{"group": "LeftLowerArm"}]}
+        view = fresh_lab.command(view, "change_avatar", avatar_changes=cast)
+        body = {"kind": "avatar_changes", "revision": view["version"], "t_s": 9.0, **told}
+        wearer.report(**body)
+    with fresh_lab.database.reading() as db:
+        newest = select(ClientReport).where(ClientReport.session_id == view["id"])
+        stored = db.scalars(newest.order_by(ClientReport.seq.desc())).first()
+        assert stored is not None
+        assert (stored.accepted, said in (stored.refusal or "")) == (False, True)
+    assert of_type(fresh_lab, view["id"], "avatar_change_reported") == []
+
+
+@pytest.mark.one_engine
+def test_changes_are_taken_back_by_saying_so(fresh_lab: Lab) -> None:
+    """A command without `avatar_changes` is refused; an empty object takes the changes back."""
+    view = joined(fresh_lab)
+    with wearing(fresh_lab, fresh_lab.headset_token(view["id"])) as wearer:
+        view = in_the_body(fresh_lab, view, wearer)
+        view = fresh_lab.command(view, "change_avatar", avatar_changes=NO_GRAVITY)
+        reply = fresh_lab.try_command(view, "change_avatar")
+        assert "avatar_changes" in str(error(reply, 422, "invalid_input"))
+        assert fresh_lab.view(view["id"])["avatar_changes"]["gravity"] is False
+        view = fresh_lab.command(view, "change_avatar", avatar_changes={})
+        assert view["avatar_changes"]["gravity"] is True

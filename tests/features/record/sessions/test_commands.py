@@ -247,9 +247,17 @@ def test_a_blinded_operator_sees_no_latency_anywhere(fresh_lab: Lab) -> None:
     assert {slot["sequence"] for slot in ledger["slots"]} == {None}
     receipt = ok(fresh_lab.operator.get(f"/api/sessions/{view['id']}/receipt"))
     assert receipt["achieved_latency"] == []
-    figures = {"fps": 90.0, "joint_error_deg": {"Head": 5.0}}
-    assert live_figures(figures, blinded=True) == {"fps": 90.0}
-    assert live_figures(figures, blinded=False) == figures
+    blind_to = {"joint_error_deg": {"Head": 5.0}, "side_contacts": 3, "client_t_s": 12.5}
+    figures = {"fps": 90.0, "completions": 4, **blind_to}
+    made = {**figures, "completions_on_beat": 2}
+    assert live_figures(made, blinded=True) == {"fps": 90.0, "completions": 2}
+    assert live_figures(made, blinded=False) == figures
+    assert live_figures({"figure_of_tomorrow": 1.0}, blinded=True) == {}
+    signal = {"gaps": 1, "frames_flagged": 7, "frames_flagged_of_participant": 2}
+    for is_blind, flagged in ((True, 2), (False, 7)):
+        told = live_figures({"signal": signal}, blinded=is_blind)
+        assert told == {"signal": {"gaps": 1, "frames_flagged": flagged}}
+        assert live_figures({"signal": None}, blinded=is_blind) == {"signal": None}
 
 
 def _stored(lab: Lab, session_id: str) -> str:

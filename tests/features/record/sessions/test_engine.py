@@ -149,6 +149,45 @@ def test_resuming_takes_effect_when_the_headset_reports_it() -> None:
     assert run.state.phase.pause_cause is None
 
 
+def test_a_pause_that_is_reported_again_takes_back_no_request_to_resume() -> None:
+    """A late report of a known pause leaves the operator's newer request to resume in force."""
+    run = Run().begin(HAND)
+    run.report("paused", 10.0)
+    run.do(c.Resume(headset_connected=True))
+    run.report("paused", 10.0)
+    assert run.state.phase is not None
+    assert (run.state.phase.status, run.state.phase.resuming) == (PhaseStatus.PAUSED, True)
+    run.report("resumed", 10.0)
+    run.report("paused", 11.0)
+    assert (run.state.phase.status, run.state.phase.resuming) == (PhaseStatus.PAUSED, False)
+
+
+def test_a_wish_to_stop_takes_back_a_request_to_resume_that_is_not_carried_out_yet() -> None:
+    """A request to resume lapses if the participant asks to stop first, and a new one counts."""
+    run = Run().begin(HAND)
+    run.report("paused", 10.0)
+    run.do(c.Resume(headset_connected=True))
+    run.do(c.AskToStop(client_t_s=12.0))
+    assert run.state.phase is not None
+    assert (run.state.phase.status, run.state.phase.resuming) == (PhaseStatus.PAUSED, False)
+    assert run.state.stop_asked
+    run.do(c.Resume(headset_connected=True))
+    assert (run.state.phase.resuming, run.state.stop_asked) == (True, False)
+    assert [type(one) for one in run.report("resumed", 10.0)] == [e.PhaseResumed]
+
+
+def test_a_headset_that_resumes_against_a_wish_to_stop_is_told_to_pause() -> None:
+    """A headset that had obeyed the lapsed request before it heard of the wish pauses again."""
+    run = Run().begin(HAND)
+    run.report("paused", 10.0)
+    run.do(c.Resume(headset_connected=True))
+    run.do(c.AskToStop(client_t_s=12.0))
+    resumed = run.report("resumed", 10.0)
+    assert [type(one) for one in resumed] == [e.PhaseResumed, e.PauseRequested]
+    assert run.state.phase is not None
+    assert (run.state.phase.status, run.state.phase.pausing) == (PhaseStatus.RUNNING, True)
+
+
 def test_resuming_needs_a_headset() -> None:
     """Resuming a phase without a headset is refused."""
     run = Run().begin(HAND)

@@ -11,10 +11,19 @@ from app.science.avatar.configuration import ANATOMIC
 from app.science.avatar.targets import HingeReference, TargetAngles, joint_rotations
 from app.science.rotations import FloatArray, from_rotation_vector, identity
 from app.science.skeleton import JOINT_COUNT, JOINT_INDEX
-from app.wire import VALUES_PER_FRAME, StreamName, decode_batch, encode_batch
+from app.wire import (
+    VALUES_PER_FRAME,
+    ContactReport,
+    Report,
+    StreamName,
+    decode_batch,
+    encode_batch,
+)
 from tests.features.builders import SessionSpec, as_physics, build_session
 from tests.features.lab import Lab
 from tests.rehearsal.orders import order
+from tests.wire.message_vectors import COMPLETION
+from tests.wire.samples import message, standing
 
 
 def live_errors_deg(
@@ -39,6 +48,23 @@ def live_errors_deg(
     figures = live.figures(now_s)
     assert figures is not None
     return dict(figures["joint_error_deg"])
+
+
+def test_completions_are_told_to_a_blinded_reader_on_a_beat_of_ten_seconds() -> None:
+    """The number for blinded readers rises at the next full 10 s, and not when a task is done."""
+    live = LiveTelemetry()
+    told = []
+    for at_s, done in ((1.0, 0), (3.0, 1), (9.9, 2), (10.2, 2), (19.0, 3), (20.0, 3)):
+        if done:
+            body = {**COMPLETION, "phase_id": 1, "number": done}
+            live.count(Report.model_validate({"epoch": 1, "seq": done, "body": body}))
+        live.take(
+            decode_batch(message(standing(1), stream=StreamName.ACTUAL, phase_id=1, active_s=at_s))
+        )
+        figures = live.figures(at_s)
+        assert figures is not None
+        told.append((figures["completions"], figures["completions_on_beat"]))
+    assert told == [(0, 0), (1, 0), (2, 0), (2, 2), (3, 2), (3, 3)]
 
 
 def shrug() -> FloatArray:
@@ -110,3 +136,25 @@ def test_a_connection_gets_the_hinges_of_the_named_bodies(lab: Lab) -> None:
         live = live_telemetry(db, session_id, ("female", "male"))
     assert set(live.hinges_by_body) == {"female", "male"}
     assert live.hinges is not None
+
+
+def test_side_contacts_are_counted_with_their_time_as_they_end() -> None:
+    """Two parts on one side at the same time are one contact, as in the record."""
+    live = LiveTelemetry()
+    live_errors_deg(live, identity(JOINT_COUNT), identity(JOINT_COUNT))
+    for seq, (begin_s, end_s) in enumerate([(1.0, 2.0), (1.5, 2.5), (4.0, 4.25)]):
+        contact = ContactReport(
+            phase_id=1,
+            surface="hand/1/left",
+            surface_kind="side",
+            body_part=("LeftHand", "LeftLowerArm", "LeftHand")[seq],
+            begin_s=begin_s,
+            end_s=end_s,
+            begin_active_s=begin_s,
+            end_active_s=end_s,
+            effect="side",
+        )
+        live.count(Report(epoch=1, seq=seq, body=contact))
+    figures = live.figures(2.0)
+    assert figures is not None
+    assert (figures["side_contacts"], figures["side_contact_s"]) == (2, 1.75)

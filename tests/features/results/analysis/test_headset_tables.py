@@ -42,7 +42,7 @@ def test_reports_become_rows(fresh_lab: Lab) -> None:
         assert phase is not None
         phase_id = phase.phase_id
         report(db, session_id, 900, GOALS)
-        report(db, session_id, 901, CALIBRATION)
+        report(db, session_id, 901, CALIBRATION | {"segments_m": {"upper_arm": 0.31}})
         report(db, session_id, 902, {**ADDED_LATENCY, "phase_id": phase_id, "added_s": 0.005})
         report(db, session_id, 903, {**ADDED_LATENCY, "phase_id": phase_id})
     with database.reading() as db:
@@ -56,6 +56,9 @@ def test_reports_become_rows(fresh_lab: Lab) -> None:
     assert bodies["residual_m"].dropna().tolist() == [0.012, 0.008]
     assert bodies["offset_y_m"].dropna().tolist() == [-0.09]
     assert set(bodies["notices"]) == {"bent_knees"}
+    assert set(bodies["upper_arm_m"]) == {0.31}
+    assert bodies["forearm_m"].isna().all()
+    assert bodies["revision"].isna().all()
     own = phases[phases["phase_id"] == phase_id].iloc[0]
     assert own["headset_added_ms"] == pytest.approx(11.1)
     assert own["headset_compensated_ms"] == 0.0

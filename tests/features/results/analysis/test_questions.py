@@ -7,13 +7,14 @@ from app.database import Database
 from app.features.design.studies import add_version, study_by_key
 from app.features.movement.avatar import add_shipped_avatar
 from app.features.movement.humanoids import add_shipped_bodies
+from app.features.results.analysis.dashboard import drawings_of
 from app.features.results.analysis.material import OWN_BODY, read_material
 from app.features.results.analysis.questions import answers_of
 from app.features.results.analysis.questions.answers import BODIES, DECLARED
 from app.features.results.analysis.questions.relations import group_of
 from app.features.results.analysis.questions.words import bounded, p_words
 from app.features.results.analysis.schemas import MeasureView, ResultView, StatisticsResults
-from app.models import Contact, Participant, StudySession
+from app.models import Contact, JointErrorRow, Participant, StudySession
 from app.protocol.plan import Step
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.protocol.helpers import STUDY as FILE
@@ -68,8 +69,8 @@ def test_identical_participants_give_the_smallest_possible_p(database: Database)
     agency = _measure(found, "karas2020_agency")
     assert (agency.n, agency.left_out) == (6, ["P-9999: withdrawn"])
     assert [tuple(one.model_dump().values()) for one in agency.glance] == [
-        ("hand", "p < .001, W = 1.00", None, "p < .001", "falls"),
-        ("foot", "p < .001, W = 1.00", None, "p < .001", "falls"),
+        ("hand", "latency", "p < .001, W = 1.00", None, "p < .001", "falls"),
+        ("foot", "latency", "p < .001, W = 1.00", None, "p < .001", "falls"),
     ]
 
 
@@ -117,6 +118,52 @@ def test_sessions_without_fingers_enter_no_mean_by_finger(database: Database) ->
 
 
 @pytest.mark.one_engine
+def test_fingers_are_booked_as_fingers_where_only_some_sessions_have_them(
+    database: Database,
+) -> None:
+    """Shares of contact are stated apart for phases with and without fingers, never merged."""
+    _found(database, 2)
+    own = (Contact.surface_kind == "side", Contact.surface.like("hand/%"))
+    first = Contact.session_id.in_(
+        select(StudySession.id).join(Participant).where(Participant.code == "P-0000")
+    )
+    with database.writing() as db:
+        db.execute(update(Contact).where(*own).values(body_part="RightHand"))
+        db.execute(update(Contact).where(*own, first).values(body_part="RightIndexDistal"))
+    with database.reading() as db:
+        found = {one.key: one for one in _shares(answers_of(read_material(db, STUDY, "people")))}
+    with_fingers = found["contact_shares_fingers_hand"]
+    assert {(row[1], row[2], row[3]) for row in with_fingers.rows} == {("finger", "100.0 %", "1")}
+    assert "with fingers" in with_fingers.title
+    without = found["contact_shares_hand"]
+    assert {(row[1], row[2], row[3]) for row in without.rows} == {("hand", "100.0 %", "1")}
+    assert "there the hand includes them" in without.method
+
+
+@pytest.mark.one_engine
+def test_the_joint_error_of_the_fingers_is_a_measure_of_its_own(database: Database) -> None:
+    """Fingers have their own joint error, and that of the body is the same with and without."""
+    with database.writing() as db:
+        for at in range(3):
+            build_session(db, SessionSpec(f"P-{at:04d}", joint_error_rad=lambda *_: 0.1))
+    with database.reading() as db:
+        before = answers_of(read_material(db, STUDY, "people"))
+    assert "joint_error_fingers" not in {one.key for one in before.measures}
+    with database.writing() as db:
+        for row in list(db.scalars(select(JointErrorRow).filter_by(joint="RightHand"))):
+            names = [column.key for column in JointErrorRow.__table__.columns]
+            own = {name: getattr(row, name) for name in names}
+            own |= {"joint": "RightThumbDistal", "mean_rad": 0.3}
+            db.add(JointErrorRow(**own))
+    with database.reading() as db:
+        after = answers_of(read_material(db, STUDY, "people"))
+    fingers = _result(after, "joint_error_fingers", "means")
+    body = [_result(one, "joint_error", "means") for one in (before, after)]
+    assert body[0] == body[1]
+    assert "17.19" in str(fingers.rows)
+
+
+@pytest.mark.one_engine
 def test_bodies_are_those_of_the_versions_that_ran(database: Database) -> None:
     """Sessions of an older version whose conditions share a latency are analysed by body."""
     text = with_bodies("female", "male", physics=False)
@@ -142,6 +189,60 @@ def test_bodies_are_those_of_the_versions_that_ran(database: Database) -> None:
         OWN_BODY: {"latency_350"},
     }
     assert BODIES in found.notes
+
+
+BY_BODY = {"female": 6, "male": 4, None: 1}
+"""What every participant answers to every item, by the body that they wear."""
+
+
+def _likert_of_body(step: Step, item: str) -> int:
+    value = BY_BODY[step.body] if step.block else 4
+    return 8 - value if item == "q9" else value
+
+
+@pytest.mark.one_engine
+def test_bodies_at_one_latency_are_compared(database: Database) -> None:
+    """A study that varies the body at one latency is tested and drawn by body, in pairs."""
+    text = with_bodies("female", "male", physics=False).replace("latency_ms: 125", "latency_ms: 0")
+    text = text.replace("latency_ms: 350", "latency_ms: 0")
+    text = text.replace("avatar: delayed_copy", f"avatar: {PHYSICS}", 1)
+    with database.writing() as db:
+        add_shipped_bodies(db, NOW)
+        add_shipped_avatar(db, NOW)
+        add_version(db, study_by_key(db, STUDY), text, NOW)
+        for at in range(8):
+            build_session(db, SessionSpec(f"P-{at:04d}", likert=_likert_of_body))
+    with database.reading() as db:
+        material = read_material(db, STUDY, "people")
+        found = answers_of(material)
+        drawings = {one.key: one for one in drawings_of(material)}
+    assert material.shared_latencies_ms == (0.0,)
+    key = "karas2020_agency_bodies_0ms"
+    agency = _measure(found, key)
+    assert (agency.title, agency.n) == ("Agency, bodies at 0 ms", 8)
+    friedman = _result(found, key, "friedman_hand")
+    assert friedman.title == "Hand: Do the bodies differ?"
+    assert "χ²(2, N = 8) = 16.00" in friedman.apa
+    pairs = _result(found, key, "pairs_hand")
+    # Two-sided exact p of eight pairs one way: 2 / 2^8 = .0078, adjusted for three it is .023.
+    names = ["female − male", f"female − {OWN_BODY}", f"male − {OWN_BODY}"]
+    assert [(row[0], row[5], row[6]) for row in pairs.rows] == [
+        (name, ".008", ".023") for name in names
+    ]
+    assert "ms" not in pairs.apa.split()
+    keys = {one.key for one in agency.results}
+    assert not keys & {"trend_hand", "planned_hand"}
+    (hand, _) = agency.glance
+    assert (hand.factor, hand.trend) == ("body", None)
+    assert hand.first == f"female and male; female and {OWN_BODY}; male and {OWN_BODY}"
+    drawn = drawings["embodiment_agency_bodies_0ms"]
+    means = drawn.data[drawn.data["row"] == "mean"]
+    hands = means[means["limb"] == "hand"]
+    assert hands["body"].tolist() == ["female", "male", OWN_BODY]
+    assert hands["value"].is_monotonic_decreasing
+    assert drawings["completions_bodies_0ms"].n == 8
+    assert "Only the body" not in drawn.caption
+    assert "Only the body female" in drawings["embodiment_agency"].caption
 
 
 def _shares(found: StatisticsResults) -> list[ResultView]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+import yaml
 from sqlalchemy.orm import Session
 
 from app.database import Database
@@ -49,9 +50,22 @@ def test_an_export_has_every_file(people: Made) -> None:
     done, tree = people.done, people.tree
     samples = {name for name in tree if name.startswith("samples/")}
     receipts = {name for name in tree if name.startswith("receipts/")}
-    assert set(tree) - samples - receipts == FILES
+    protocol = {name for name in tree if name.startswith("protocol/")}
+    assert set(tree) - samples - receipts - protocol == FILES
     assert len(samples) == len(receipts) == done.sessions == 2
     assert done.files == len(tree)
+
+
+def test_an_export_says_what_was_asked_and_how_it_was_scored(people: Made) -> None:
+    """Study and instruments travel along: every answered item and every score is explained."""
+    texts = [data for name, data in people.tree.items() if name.startswith("protocol/")]
+    files = [yaml.safe_load(text) for text in texts]
+    asked = {item["key"]: item["text"] for file in files for item in file.get("items", ())}
+    answered = {row["item"] for row in rows_of(people.tree["answers.csv"])}
+    assert answered <= asked.keys()
+    scored = {score["key"] for file in files for score in file.get("scores", ())}
+    assert {row["score"] for row in rows_of(people.tree["scores.csv"])} <= scored
+    assert [file["key"] for file in files if "conditions" in file] == [STUDY]
 
 
 def test_every_column_of_every_file_is_in_the_codebook(people: Made) -> None:

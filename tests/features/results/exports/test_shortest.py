@@ -21,12 +21,19 @@ def test_the_text_reads_back_as_the_same_single() -> None:
     assert (back.view(np.uint32) == values.view(np.uint32)).all()
 
 
-@pytest.mark.parametrize("scale", [1.0, 1e-4, 3e4])
+@pytest.mark.parametrize("scale", [1.0, 1e-4, 3e4, 1e-13, 1e-20, 1e-36])
 def test_the_text_is_the_shortest(scale: float) -> None:
     """The text of a single is as short as numpy's shortest (Dragon4)."""
     values = np.random.default_rng(1).normal(scale=scale, size=5000).astype(np.float32)
     ours = shortest_doubles(values).tolist()
     assert ours == [float(str(value)) for value in values]
+
+
+def test_powers_have_their_shortest_text() -> None:
+    """Powers of two, whose neighbours are not equally far away, and of ten are the shortest too."""
+    powers = [*(2.0 ** np.arange(-149, 128)), *(10.0 ** np.arange(-45, 39))]
+    values = np.array(powers, np.float32)
+    assert shortest_doubles(values).tolist() == [float(str(value)) for value in values]
 
 
 def test_known_numbers_have_their_shortest_text() -> None:

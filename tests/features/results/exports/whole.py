@@ -24,6 +24,7 @@ MORE = (
     "goal_states",
     "body_calibrations",
     "calibrations",
+    "headset_tests",
     "codebook",
 )
 FILES = {*(f"{name}.csv" for name in (*TABLES, *MORE)), "README.txt"}

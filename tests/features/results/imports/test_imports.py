@@ -104,6 +104,16 @@ def test_a_wide_survey_file_is_imported(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
+def test_a_code_that_turns_writing_around_is_a_problem(lab: Lab) -> None:
+    """A participant's code with U+202E is reported with its position."""
+    text = tidy(["P\u202e1,x,3", "P2,x,3"])
+    dry = check(lab, text, look(lab, text, instrument="fms")["proposal"])
+    (problem,) = dry["problems"]
+    assert (problem["line"], problem["column"]) == (2, "pid")
+    assert "Character 2 is U+202E" in problem["message"]
+
+
+@pytest.mark.one_engine
 def test_every_invalid_cell_is_reported_and_nothing_is_imported(lab: Lab) -> None:
     """Every invalid cell of a file is reported, and such a file is not imported at all."""
     text = tidy(["a@b.org,x,3", "P1,x,3", "P1,x,4", "P2,x,21", ",x,2", "P3,x,"])
@@ -231,3 +241,133 @@ def test_items_reversed_in_the_file_are_detected(lab: Lab) -> None:
     assert not any("sp2 is reversed" in note for note in dry["notes"])
     answers = [one["answers"]["sp2"] for one in dry["first_forms"]]
     assert answers == [6.0 - n % 7 for n in range(len(answers))]
+
+
+QUALTRICS = (
+    "StartDate,ResponseId,Participant,Cond,Q1_1,Q1_2,Q1_3,Q2,Comment\n"
+    "Start Date,Response ID,Who?,Which?,I was calm,I was tense,I was bored,How old?,Anything?\n"
+    '"{""ImportId"":""startDate""}","{""ImportId"":""_recordId""}","{""ImportId"":""QID1""}",'
+    '"{""ImportId"":""QID2""}","{""ImportId"":""QID3_1""}","{""ImportId"":""QID3_2""}",'
+    '"{""ImportId"":""QID3_3""}","{""ImportId"":""QID4""}","{""ImportId"":""QID5""}"\n'
+    "2026-03-01,R_1,P1,low,1,5,2,31,nice\n"
+    "2026-03-01,R_2,P1,high,2,4,2,31,\n"
+    "2026-03-02,R_3,P2,low,1,6,2,28,\n"
+    "2026-03-02,R_4,P2,high,3,5,2,28,too long\n"
+)
+"""A survey of three items that no known instrument asks, as Qualtrics writes it."""
+
+
+@pytest.mark.one_engine
+def test_a_foreign_questionnaire_is_offered_as_an_instrument_of_ones_own(fresh_lab: Lab) -> None:
+    """Item columns of no known instrument become an instrument, and the file is imported by it."""
+    seen = look(fresh_lab, QUALTRICS)
+    offered = seen["offer"]
+    assert [(one["key"], one["column"], one["text"]) for one in offered["items"]] == [
+        ("q1_1", "Q1_1", "I was calm"),
+        ("q1_2", "Q1_2", "I was tense"),
+        ("q1_3", "Q1_3", "I was bored"),
+    ]
+    assert (offered["minimum"], offered["maximum"], offered["seen"]) == (1, 7, "1 to 6")
+    left_out = {one["name"]: one["filled"] for one in seen["left_out"]}
+    assert left_out["Q2"] == 4
+    assert left_out["Comment"] == 2
+    assert not {"Q1_1", "Q1_2", "Q1_3"} & set(left_out)
+    offered |= {"key": "mood", "title": "Mood", "maximum": 6}
+    made = ok(fresh_lab.operator.post(f"{URL}/instrument", json=offered))
+    again = look(fresh_lab, QUALTRICS)
+    assert (made["instrument"], again["instrument"]) == ("mood", "mood")
+    assert again["offer"] is None
+    mapping = again["proposal"]
+    assert mapping["sets"][0]["items"] == {"q1_1": "Q1_1", "q1_2": "Q1_2", "q1_3": "Q1_3"}
+    assert (mapping["participant"], mapping["condition"]) == ("Participant", "Cond")
+    dry = check(fresh_lab, QUALTRICS, mapping)
+    assert (dry["n_problems"], dry["forms"], dry["left_out"]) == (0, 4, [])
+    assert dry["first_forms"][0]["scores"]["mean_of_items"] == pytest.approx(8 / 3)
+    stored = ok(fresh_lab.operator.get("/api/instruments/mood"))
+    assert stored["preview"]["instrument"]["scale"]["maximum"] == 6
+
+
+@pytest.mark.one_engine
+@pytest.mark.parametrize(
+    ("edits", "words"),
+    [
+        ({}, "Scale 1 to 7, guessed from the answers seen (1 to 6)"),
+        ({"maximum": 6}, "Scale 1 to 6: its minimum guessed from the answers seen"),
+        ({"guessed_minimum": None, "guessed_maximum": None}, "Scale 1 to 7, set by a person."),
+    ],
+)
+def test_a_scale_is_a_guess_until_a_person_sets_or_confirms_it(
+    fresh_lab: Lab, edits: Json, words: str
+) -> None:
+    """The provenance of an offered instrument says which ends of its scale are still guesses."""
+    offered = look(fresh_lab, QUALTRICS)["offer"] | {"key": "mood"} | edits
+    ok(fresh_lab.operator.post(f"{URL}/instrument", json=offered))
+    stored = ok(fresh_lab.operator.get("/api/instruments/mood"))
+    assert words in stored["preview"]["instrument"]["provenance"]["verified"]
+
+
+def test_columns_of_answers_that_are_not_imported_are_counted(lab: Lab) -> None:
+    """A check with no problems still names the columns of answers that it leaves out."""
+    text = "pid,condition,fms,mood1,mood2\nP1,a,3,1,5\nP1,b,4,2,5\nP2,a,2,1,\nP2,b,5,4,5\n"
+    seen = look(lab, text)
+    assert seen["instrument"] == "fms"
+    assert [one["column"] for one in seen["offer"]["items"]] == ["mood1", "mood2"]
+    dry = check(lab, text, seen["proposal"])
+    assert dry["n_problems"] == 0
+    assert dry["left_out"] == [{"name": "mood1", "filled": 4}, {"name": "mood2", "filled": 3}]
+    assert (
+        "2 columns that look like answers are not imported (7 answers): mood1, mood2."
+        in (dry["notes"])
+    )
+
+
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        ({"key": "fms"}, "not used before"),
+        ({"key": "Own Scale"}, "lower-case letters"),
+        ({"minimum": 7, "maximum": 1}, "minimum below the maximum"),
+    ],
+)
+def test_an_instrument_that_cannot_be_is_not_made(lab: Lab, part: Json, words: str) -> None:
+    """A key that is taken or invalid, or a scale without steps, is refused with what is valid."""
+    offered = look(lab, QUALTRICS)["offer"] | part
+    refused = error(lab.operator.post(f"{URL}/instrument", json=offered), 422, "invalid_input")
+    assert words in str(refused)
+
+
+def test_answers_in_words_are_offered_with_the_order_of_their_scale(lab: Lab) -> None:
+    """Words of a known scale give its steps as labels, in order and for all columns."""
+    text = "pid,v1,v2\nP1,Agree,Strongly disagree\nP2,Disagree,Somewhat agree\n"
+    offered = look(lab, text)["offer"]
+    assert (offered["minimum"], offered["maximum"]) == (1, 7)
+    assert offered["labels"][0] == "strongly disagree"
+    assert [one["column"] for one in offered["items"]] == ["v1", "v2"]
+
+
+@pytest.mark.one_engine
+def test_a_test_that_can_say_nothing_has_no_p_value(fresh_lab: Lab) -> None:
+    """Two conditions that never differ have no W and no p, only the reason."""
+    rows = [f"P{at},{name},{at + 1}" for at in range(5) for name in ("a", "b")]
+    text = "\n".join(["pid,condition,fms", *rows]) + "\n"
+    mapping = look(fresh_lab, text)["proposal"]
+    made = ok(import_answers(fresh_lab, text, mapping))
+    (result,) = ok(fresh_lab.operator.get(f"{URL}/{made['id']}"))["results"]
+    (pair,) = result["pairs"]
+    assert (pair["p"], pair["p_holm"], pair["w"], pair["rank_biserial"]) == (None,) * 4
+    assert pair["degenerate"] == "all 5 differences are zero"
+    assert result["why_not"].startswith("Nobody differs between conditions")
+
+
+def test_the_columns_that_a_framework_adds_are_no_answers(lab: Lab) -> None:
+    """Of a trial table of the Unity Experiment Framework, only the ratings are offered."""
+    head = "experiment,session_num,trial_num,block_num,trial_num_in_block,start_time,end_time,ppid"
+    rows = [
+        f"vr,1,{trial},1,{trial},{trial}.5,{trial + 1}.5,P1,{delay},{trial % 5},{(trial + 2) % 5}"
+        for trial, delay in enumerate((0, 125, 350), start=1)
+    ]
+    text = "\n".join([f"{head},latency,owned,steered", *rows]) + "\n"
+    seen = look(lab, text)
+    assert [one["column"] for one in seen["offer"]["items"]] == ["owned", "steered"]
+    assert (seen["offer"]["minimum"], seen["offer"]["maximum"]) == (0, 4)
+    assert {"trial_num", "start_time", "session_num"} <= {one["name"] for one in seen["left_out"]}

@@ -3,12 +3,21 @@
 import json
 import struct
 from dataclasses import dataclass, replace
+from datetime import timedelta
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sqlalchemy import delete, select
 
+from app.features.record.sessions import CALIBRATION, store_content
+from app.features.record.sessions.engine.events import (
+    AvatarBuilt,
+    Event,
+    PhaseStarted,
+    SessionEnded,
+)
+from app.features.record.sessions.journal import append_events
 from app.features.record.telemetry.frames import phase_frames
 from app.features.results.replay.movement import (
     ROTATION_SCALE,
@@ -17,10 +26,11 @@ from app.features.results.replay.movement import (
     movement_of,
     placed_movement,
 )
-from app.models import Phase, StudySession, TelemetryChunk, TelemetryStream
+from app.features.results.replay.service import ReplayedBody
+from app.models import Phase, SessionEvent, StudySession, TelemetryChunk, TelemetryStream
 from app.science.joint_error import joint_errors
 from app.science.rotations import normalise
-from app.science.skeleton import JOINT_COUNT, build_skeleton, forward_kinematics
+from app.science.skeleton import JOINT_COUNT, JOINT_NAMES, build_skeleton, forward_kinematics
 from app.wire import BODY_STREAMS, FINGER_STREAMS, StreamName
 from tests.api.people import sign_in
 from tests.features.builders import SessionSpec, build_session
@@ -109,6 +119,42 @@ def test_positions_are_those_of_the_nearest_stored_frame(lab: Lab, phase: Phase)
 
 
 @pytest.mark.one_engine
+def test_a_replay_without_a_recorded_body_has_the_measured_arms(lab: Lab, phase: Phase) -> None:
+    """Arms are as long as the calibration before the phase measured; a later one changes nothing.
+
+    Lengths that no body has are left out.
+    """
+    started_at = phase.started_at
+    assert started_at is not None
+    for measured_m, minutes in ((0.3, -2), (50.0, 2)):
+        with lab.database.writing() as db:
+            report = {"stature_m": STATURE_M, "segments_m": {"upper_arm": measured_m}}
+            made_at = started_at + timedelta(minutes=minutes)
+            store_content(
+                db,
+                session_id=phase.session_id,
+                kind=CALIBRATION,
+                body=report,
+                by="headset",
+                now=made_at,
+            )
+        (shown,) = {
+            tuple(_arm_lengths_m(placed(lab, phase), body)) for body in ("target", "actual")
+        }
+        assert shown == (0.3, round(0.146 * STATURE_M, 3))
+    assert ReplayedBody(STATURE_M, {"upper_arm": 50.0}).skeleton().length_m(
+        "LeftLowerArm"
+    ) == pytest.approx(0.186 * STATURE_M)
+
+
+def _arm_lengths_m(shown: Decoded, body: str) -> list[float]:
+    """Return the lengths of upper arm and forearm in the first frame, to a millimetre."""
+    joints = [JOINT_NAMES.index(f"Left{part}") for part in ("UpperArm", "LowerArm", "Hand")]
+    places = shown.bodies[body][0][joints]
+    return [round(float(one), 3) for one in np.linalg.norm(np.diff(places, axis=0), axis=1)]
+
+
+@pytest.mark.one_engine
 def test_rotations_follow_on_request(lab: Lab, phase: Phase) -> None:
     """On request the same movement has rotations after it, which lead to the same positions."""
     plain = lab.operator.get(path(phase, "movement")).content
@@ -194,6 +240,34 @@ def test_unrecorded_time_is_a_gap(lab: Lab, phase: Phase) -> None:
     outside = (moments_s <= begin_s) | (moments_s >= end_s)
     assert not existing[inside].any()
     assert existing[outside & (moments_s < 539 / 90)].all()
+
+
+@pytest.mark.one_engine
+def test_a_body_of_later_was_not_worn_before(lab: Lab, phase: Phase) -> None:
+    """A phase is replayed with the body recorded before it, not with one asked for later."""
+    session_id, clock = phase.session_id, lab.context.clock
+
+    def built(stature_m: float) -> Event:
+        body = {"stature_m": stature_m, "model_hash": "0" * 64}
+        now = clock.utc_now()
+        made = store_content(
+            db, session_id=session_id, kind="avatar", body=body, by="test", now=now
+        )
+        return AvatarBuilt(configuration_hash="0" * 64, **vars(made))
+
+    with lab.database.writing() as db:
+        db.execute(delete(SessionEvent).where(SessionEvent.session_id == session_id))
+        started = PhaseStarted(phase_id=phase.phase_id, client_t_s=1.0)
+        append_events(
+            db,
+            session_id=session_id,
+            version=0,
+            events=[built(1.9), started, built(0.6), SessionEnded(status="completed")],
+            actor="test",
+            command_id=None,
+            clock=clock,
+        )
+    assert ok(lab.operator.get(path(phase)))["stature_m"] == 1.9
 
 
 @pytest.mark.one_engine

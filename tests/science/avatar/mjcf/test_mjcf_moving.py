@@ -13,7 +13,7 @@ from app.science.avatar.body.parts import FINGER_PARTS, PART_NAMES
 from app.science.avatar.configuration.model_options import TIMESTEP_S, ModelOptions
 from app.science.avatar.mjcf.gains import default_settings
 from app.science.avatar.mjcf.mjcf import build_mjcf, driven_axes
-from app.science.avatar.mjcf.scene import Scene, SceneBox
+from app.science.avatar.mjcf.scene import LooseBox, Scene, SceneBox
 from tests.science.avatar.bodies import (
     CARRIED,
     EMPTY,
@@ -175,3 +175,28 @@ def test_a_motor_without_torque_lets_the_limb_hang() -> None:
     model, data = loaded(mjcf_of(body, settings=settings))
     mujoco.mj_step(model, data, nstep=200)
     assert np.degrees(data.joint("LeftUpperArmZ").qpos[0]) < -30.0
+
+
+def test_a_loose_box_hovers_until_it_is_dropped() -> None:
+    """A box that falls leaves the avatar's hinges first, hovers weightless, then falls freely."""
+    box = LooseBox("box", (0.0, 4.0, 2.0), (0.1, 0.1, 0.1), 2.0)
+    body = build_body(1.75, parts=NO_FINGERS)
+    model, data = loaded(mjcf_of(body, scene=Scene(loose=(box,))))
+    plain, _ = loaded(mjcf_of(body, scene=Scene()))
+    assert [model.joint(row).name for row in range(plain.njnt)] == [
+        plain.joint(row).name for row in range(plain.njnt)
+    ]
+    for _ in range(100):
+        mujoco.mj_step(model, data)
+    assert data.body("box").xpos == pytest.approx((0.0, 4.0, 2.0), abs=1e-9)
+    model.body_gravcomp[model.body("box").id] = 0.0
+    steps = 250
+    for _ in range(steps):
+        mujoco.mj_step(model, data)
+    # Semi-implicit steps: the sum 1 + 2 + ... + n of g dt^2.
+    fallen = 9.81 * TIMESTEP_S**2 * steps * (steps + 1) / 2.0
+    assert data.joint("box").qpos[1] == pytest.approx(4.0 - fallen, abs=1e-6)
+    for _ in range(1000):
+        mujoco.mj_step(model, data)
+    assert data.body("box").xpos[1] == pytest.approx(0.1, abs=2e-3)
+    assert warnings_of(data) == 0

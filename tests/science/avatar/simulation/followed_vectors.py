@@ -6,6 +6,7 @@ the same body and touches as in the scripted headset (`app.rehearsal.avatars.Phy
 """
 
 import json
+import re
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -13,7 +14,7 @@ from typing import Any, cast
 import mujoco
 import numpy as np
 
-from app.protocol.avatar import configuration_of, file_of
+from app.protocol.avatar import AvatarFile, configuration_of, file_of
 from app.rehearsal.avatars import PhysicsBody
 from app.science.avatar.body import AXIS_NAMES
 from app.science.avatar.ik import Chain
@@ -97,6 +98,24 @@ CASES: tuple[Json, ...] = (
             {"frame": 130, "put_on": True},
         ],
     },
+    {
+        "name": "an arm that lags behind, and layers of its own",
+        "target_space": "local",
+        "fingers": False,
+        "hips_scale": 1.0,
+        "own_delays_s": {"LeftUpperArmY": 0.1, "LeftLowerArmY": 0.25},
+        "layers": [
+            {"layers": ["torso", "left_hand"], "collide": False},
+            {"layers": ["torso", "right_arm"], "collide": True},
+        ],
+        "events": [
+            {"frame": 0, "latency_s": 0.05, "surfaces": list(SURFACES)},
+            {"frame": 30, "order": NO_CHANGE | {"revision": 1, "gravity": False}},
+            {"frame": 90, "latency_s": 0.0},
+            {"frame": 100, "order": NO_CHANGE | {"revision": 2, "self_collision": False}},
+            {"frame": 130, "order": NO_CHANGE | {"revision": 3}},
+        ],
+    },
 )
 
 
@@ -117,11 +136,11 @@ def make() -> Json:
 
 def followed(case: Json, keys: Json) -> Json:
     """Return the body's pose in every sixth frame, its touches and the angles of held axes."""
-    file = file_of(default_configuration()).model_copy(
-        update={"target_space": case["target_space"]}
-    )
+    content = file_of(default_configuration()).model_dump()
+    own = {"target_space": case["target_space"], "layers": case.get("layers")}
+    file = AvatarFile.model_validate(content | own)
     body = PhysicsBody(
-        MODEL.read_text(),
+        model_with(case.get("own_delays_s", {})),
         configuration_of(file),
         case["hips_scale"],
         with_fingers=case["fingers"],
@@ -154,6 +173,14 @@ def followed(case: Json, keys: Json) -> Json:
                 | ({} if body.fingers is None else {"fingers": _rounded(body.fingers.ravel()[::4])})
             )
     return {"held_rad": held, "samples": samples}
+
+
+def model_with(own_delays_s: dict[str, float]) -> str:
+    """Return the stored model with motors that lag behind the others."""
+    text = MODEL.read_text()
+    for name, delay_s in own_delays_s.items():
+        text = re.sub(rf'(<pid name="{name}".* delay=")0"', rf'\g<1>{delay_s:g}"', text)
+    return text
 
 
 def _layout(keys: list[str]) -> TaskLayout | None:

@@ -4,34 +4,17 @@ from dataclasses import replace
 from itertools import count
 from math import asin, degrees, inf, pi, radians, sqrt, tan
 
-import mujoco
 import pytest
 
 from app.science.avatar.tuning.heuristics import HEURISTICS
-from app.science.avatar.tuning.plant import AxisPlant
 from app.science.avatar.tuning.relay import (
     HYSTERESIS_RAD,
     NoOscillation,
     Oscillation,
     RelaySettings,
-    relay_for,
     run_relay,
 )
-
-
-def _plant(inertia_kg_m2: float) -> AxisPlant:
-    """Return the model of a wheel of this inertia on a hinge."""
-    inertia = f"{inertia_kg_m2} {inertia_kg_m2} {inertia_kg_m2}"
-    return AxisPlant(
-        mujoco.MjModel.from_xml_string(f"""
-        <mujoco>
-          <option integrator="implicitfast"/>
-          <worldbody><body>
-            <inertial pos="0 0 0" mass="1" diaginertia="{inertia}"/>
-            <joint type="hinge" axis="1 0 0"/>
-          </body></worldbody>
-        </mujoco>""")
-    )
+from tests.science.avatar.tuning.known_wheel import relay_for, wheel
 
 
 def _stopped() -> float:
@@ -40,7 +23,7 @@ def _stopped() -> float:
 
 
 def _found(inertia_kg_m2: float, settings: RelaySettings) -> Oscillation:
-    found = run_relay(_plant(inertia_kg_m2), settings, wall_s=_stopped)
+    found = run_relay(wheel(inertia_kg_m2), settings, wall_s=_stopped)
     assert isinstance(found, Oscillation), found
     return found
 
@@ -83,7 +66,7 @@ def test_a_relay_of_twice_the_torque_is_faster_by_the_cube_root() -> None:
 def test_an_undamped_hinge_has_no_limit_cycle() -> None:
     """The experiment on an undamped hinge, whose swings keep growing, ends with that reason."""
     settings = replace(relay_for(1.0, 5.0), damping_nm_s=0.0, longest_s=30.0)
-    found = run_relay(_plant(1.0), settings, wall_s=_stopped)
+    found = run_relay(wheel(1.0), settings, wall_s=_stopped)
     assert isinstance(found, NoOscillation)
     assert "grows" in found.reason
 
@@ -91,7 +74,7 @@ def test_an_undamped_hinge_has_no_limit_cycle() -> None:
 def test_a_relay_that_is_too_weak_is_given_up_after_the_simulated_time() -> None:
     """An experiment whose relay never reaches the switching angle ends after the simulated time."""
     settings = replace(relay_for(1.0, 5.0), torque_nm=1e-4, longest_s=2.0)
-    found = run_relay(_plant(1.0), settings, wall_s=_stopped)
+    found = run_relay(wheel(1.0), settings, wall_s=_stopped)
     assert isinstance(found, NoOscillation)
     assert "within 2 s of simulated time" in found.reason
     assert "did not complete a single cycle" in found.reason
@@ -101,14 +84,14 @@ def test_an_experiment_ends_after_its_time_on_the_wall_clock() -> None:
     """An experiment ends when its wall-clock time is over, by the clock that is passed in."""
     clock = count()
     settings = replace(relay_for(1.0, 5.0), longest_wall_s=2.0)
-    found = run_relay(_plant(1.0), settings, wall_s=lambda: float(next(clock)))
+    found = run_relay(wheel(1.0), settings, wall_s=lambda: float(next(clock)))
     assert isinstance(found, NoOscillation)
     assert "within 2 s by the clock" in found.reason
 
 
 def test_a_relay_experiment_can_be_cancelled() -> None:
     """A cancelled relay experiment has no result."""
-    found = run_relay(_plant(1.0), relay_for(1.0, 5.0), wall_s=_stopped, cancelled=lambda: True)
+    found = run_relay(wheel(1.0), relay_for(1.0, 5.0), wall_s=_stopped, cancelled=lambda: True)
     assert found == NoOscillation("the tuning was cancelled")
 
 

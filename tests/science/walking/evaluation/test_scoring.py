@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from app.science.rotations import FloatArray
 from app.science.walking.evaluation.evaluation import evaluate, pooled
 from app.science.walking.evaluation.leave_one_out import (
     neighbours_left_out,
@@ -17,8 +18,16 @@ from app.science.walking.maps.maps import MapMaker, maps_of
 from app.science.walking.maps.suitability import PAPER, TIME_AWARE
 from app.science.walking.models.crps import covers, crps_s
 from app.science.walking.models.fitting import FitOptions, fitted, space_of
-from app.science.walking.records.model import LENGTH, STATURE, TURNING, WalkingError
+from app.science.walking.records.model import (
+    LENGTH,
+    STATURE,
+    TURNING,
+    PlannedPath,
+    PlannedWalk,
+    WalkingError,
+)
 from app.science.walking.records.parameters import PAPER_PARAMETERS, regular_grid
+from app.science.walking.records.protocols import Course, Trajectories
 from app.science.walking.scene.laboratory import straight_scene
 from app.science.walking.synthetic.populations import POPULATIONS
 from app.science.walking.synthetic.synthetic_walks import Sample, synthetic_walks
@@ -101,6 +110,17 @@ def test_people_left_out_are_harder_than_entries() -> None:
     assert abs(hard.sd) > abs(easy.sd)
 
 
+class _ShortPathsOnly(SteeringFollower):
+    """A follower whose agents never arrive at the end of a path of more than 50 m."""
+
+    def follow(self, course: Course, vectors: FloatArray) -> Trajectories:
+        """Let agents walk; on long paths none arrives."""
+        if course.path.length_m <= 50.0:
+            return super().follow(course, vectors)
+        places = np.zeros((len(vectors), course.samples, 2))
+        return Trajectories(places, np.full(len(vectors), np.nan))
+
+
 def test_a_population_is_predicted_from_others_of_it() -> None:
     """Unseen people of a synthetic population are predicted best by the probabilistic model."""
     maker = MapMaker(grid=regular_grid(PAPER_PARAMETERS, 7))
@@ -130,6 +150,17 @@ def test_a_population_is_predicted_from_others_of_it() -> None:
         ("stat", "prob"),
         ("adapt", "prob"),
     ]
+    # A path on which all agents get lost stops none of the other walks.
+    far = PlannedPath(np.array([[0.0, 0.0], [0.0, 100.0]]))
+    lost = PlannedWalk(others[1].walk, far, others[1].dependencies)
+    given = [others[0], lost, others[2]]
+    rest = evaluate(fit.models, _ShortPathsOnly(), given, rng, draws=20)
+    assert list(rest.left_out) == [1]
+    assert "agents of model" in rest.left_out[1]
+    assert rest.subjects == (others[0].walk.subject, others[2].walk.subject)
+    assert pooled([rest, rest]).left_out.keys() == {1, 4}
+    with pytest.raises(WalkingError, match="None of the 1 walks can be predicted by all models"):
+        evaluate(fit.models, _ShortPathsOnly(), [lost], rng, draws=20)
 
 
 def test_an_evaluation_without_walks_is_rejected() -> None:

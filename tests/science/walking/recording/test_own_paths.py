@@ -1,11 +1,13 @@
 """Tests that walks are compared with agents on the path that people really took."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from app.science.rotations import FloatArray
 from app.science.walking.planning import LazyThetaPlanner
-from app.science.walking.recording import LeftOut, entry_of, rounds_of, walks_of
+from app.science.walking.recording import LeftOut, Recorded, entry_of, rounds_of, walks_of
 from app.science.walking.records import LENGTH, TURNING, PlannedWalk, Track, Walk
 from app.science.walking.scene import Obstacle, Scene, box_corners, open_scene
 
@@ -79,3 +81,23 @@ def test_a_walk_through_an_obstacle_is_left_out() -> None:
     found = _entry(walk, hall)
     assert isinstance(found, LeftOut)
     assert "crosses an obstacle" in found.reason
+
+
+def test_a_recording_given_twice_is_no_second_person() -> None:
+    """The same samples under another name, moved on the floor, are found; other walks are not."""
+    recorded, walk = Recorded(), walks_of(_track(_arc(4.0, 1.0)))[0]
+    assert recorded.objection(walk, "first") is None
+    copy = replace(walk, xy_m=walk.xy_m + np.array([2.0, -1.0]), subject="somebody else")
+    assert recorded.objection(copy, "second") == (
+        "it is the same recording as first, sample for sample"
+    )
+    assert recorded.objection(replace(walk, xy_m=walk.xy_m * 1.02), "third") is None
+
+
+def test_a_walk_faster_than_anybody_walks_is_named() -> None:
+    """Centimetres read as metres, of a slow crowd, or a wrong rate, are named by their speed."""
+    walk = walks_of(_track(_arc(4.0, 1.0)))[0]
+    fast = replace(walk, times_s=walk.times_s / 10.0)
+    objection = Recorded().objection(fast, "fast")
+    assert objection is not None
+    assert "faster than anybody walks" in objection

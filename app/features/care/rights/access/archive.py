@@ -11,13 +11,16 @@ from sqlalchemy.orm import Session
 from app.database import Database
 from app.features.care.rights.access.page import page_of
 from app.features.care.rights.access.summary import visits_of
-from app.features.record.sessions import content_body, contents_of
+from app.features.record.sessions import AVATAR, AVATAR_CHANGE, content_body, contents_of
 from app.features.results.exports import safe_name
 from app.features.results.exports.writing import Member, person_archive
 from app.features.results.imports import imported_answers_of
-from app.models import Participant, StudySession
+from app.models import Participant, Study, StudySession
+from app.platform.access import hidden_sessions
 
 PAGE, WORDS, IMPORTED = "your-data.html", "words.json", "imported.json"
+OF_THE_BODY = (AVATAR, AVATAR_CHANGE)
+"""Kinds of content that reveal which body was worn."""
 
 
 def access_name(code: str) -> str:
@@ -50,12 +53,17 @@ def _members(db: Session, participant: Participant, now: datetime) -> Iterator[M
 
 
 def _words(db: Session, participant: Participant) -> str:
-    """Return notes, reasons, heights and corrections in their stored form, as JSON."""
+    """Return notes, reasons, heights and corrections in their stored form, as JSON.
+
+    While a session's condition must not be known, what was recorded of its avatars is left out,
+    because it depends on the body that was worn.
+    """
     sessions = db.scalars(
         select(StudySession.id)
         .where(StudySession.participant_id == participant.id)
         .order_by(StudySession.created_at, StudySession.id)
     )
+    hidden = hidden_sessions(db, db.get_one(Study, participant.study_id))
     words: list[dict[str, Any]] = [
         {
             "session_id": row.session_id,
@@ -66,5 +74,6 @@ def _words(db: Session, participant: Participant) -> str:
         }
         for session_id in sessions.all()
         for row in contents_of(db, session_id)
+        if not (session_id in hidden and row.kind in OF_THE_BODY)
     ]
     return json.dumps(words, ensure_ascii=False, indent=2) + "\n"

@@ -23,14 +23,14 @@ from app.features.movement.walking.prediction_queue import PredictionQueue
 from app.features.movement.walking.scenes import scene_text
 from app.features.movement.walking.schemas import NewModel
 from app.features.movement.walking.service import (
-    begin_fit,
-    mark_resumed,
-    mark_stopped,
+    MODELS,
+    follow_fit,
     model_list,
     model_view,
     order_model,
     ready_content,
     remove_model,
+    resume_fit,
 )
 from app.features.movement.walking.sources import Question, SliceQuestion
 from app.features.movement.walking.walk_sets import store_of
@@ -51,7 +51,7 @@ def get_models(db: Reading, context: Context, _: SignedIn) -> list[ModelListed]:
 async def post_model(request: NewModel, context: Context, caller: SignedIn) -> ModelView:
     """Start fitting a model; the response is immediate, and the model's view shows the progress."""
     model_id = await write(context, lambda db: order_model(db, context, caller, request))
-    return await run_in_threadpool(begin_fit, context, model_id)
+    return await run_in_threadpool(follow_fit, context, model_id)
 
 
 @router.get("/models/{model_id}")
@@ -70,16 +70,15 @@ async def delete_model(model_id: str, context: Context, caller: SignedIn) -> Non
 @router.post("/models/{model_id}/stop")
 async def stop_model(model_id: str, context: Context, caller: SignedIn) -> ModelView:
     """Stop fitting a model; its finished maps are kept."""
-    await write(context, lambda db: mark_stopped(db, context, caller, model_id))
-    await run_in_threadpool(context.part(FitQueue).halt, model_id)
-    return await run_in_threadpool(_view, context, model_id)
+    await write(context, lambda db: MODELS.stop(db, context, caller, model_id))
+    return await run_in_threadpool(follow_fit, context, model_id)
 
 
 @router.post("/models/{model_id}/resume")
 async def resume_model(model_id: str, context: Context, caller: SignedIn) -> ModelView:
     """Resume a stopped fit, or retry a failed one."""
-    await write(context, lambda db: mark_resumed(db, context, caller, model_id))
-    return await run_in_threadpool(begin_fit, context, model_id)
+    await write(context, lambda db: resume_fit(db, context, caller, model_id))
+    return await run_in_threadpool(follow_fit, context, model_id)
 
 
 @router.get(
@@ -135,11 +134,6 @@ async def post_slice(
 def _content(context: AppContext, model_id: str) -> str:
     with context.database.reading() as db:
         return ready_content(db, model_id)[0]
-
-
-def _view(context: AppContext, model_id: str) -> ModelView:
-    with context.database.reading() as db:
-        return model_view(db, context, model_id)
 
 
 def _question(context: AppContext, request: PathAsked) -> Question:

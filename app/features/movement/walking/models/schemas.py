@@ -1,7 +1,7 @@
 """Request and response models of fitted models and their predictions, in SI units."""
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -17,6 +17,7 @@ from app.features.movement.walking.schemas import (
     State,
     Stature,
 )
+from app.science.walking.evaluation import reason_for_no_interval
 
 Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
 Value = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
@@ -76,8 +77,39 @@ class LeftOutFigures(BaseModel):
     people: LeftOutView
 
 
+class PredictedView(BaseModel):
+    """How well travel times of people who were left out are predicted, by one method.
+
+    `method`: mixed, the model of this product, or a baseline that learnt from the same walks:
+    constant speed, line, log-log. `crps_less_s`: by how much the error of mixed is smaller, and
+    the 95 % interval of that over people; its ends are null if `no_interval` says why there is
+    none, as in `walk evaluate`. Coverages are shares: .5 and .9 if intervals are right.
+    """
+
+    method: str
+    crps_s: float
+    crps_less_s: tuple[float, float | None, float | None]
+    coverage_50: float
+    coverage_90: float
+    walks: int
+    people: int
+    no_interval: str | None = None
+
+    @model_validator(mode="after")
+    def _hide_interval_of_too_few(self) -> Self:
+        """Models that were fitted earlier have an interval stored, however few their people."""
+        self.no_interval = reason_for_no_interval(self.people)
+        if self.no_interval is not None:
+            self.crps_less_s = (self.crps_less_s[0], None, None)
+        return self
+
+
 class ModelSummary(BaseModel):
-    """The summary of a fitted model; `model_hash` is the hash in its file."""
+    """The summary of a fitted model; `model_hash` is the hash in its file.
+
+    `predicted` is null for models fitted before it was computed, and empty for fewer than three
+    people.
+    """
 
     model_hash: str
     walks: int
@@ -91,6 +123,7 @@ class ModelSummary(BaseModel):
     k: int
     static_vector: list[float]
     left_out: LeftOutFigures
+    predicted: list[PredictedView] | None = None
     census: CensusView
 
 
@@ -206,8 +239,10 @@ class SampledWalk(BaseModel):
 
 
 class PredictionView(BaseModel):
-    """The distribution of durations on a path by P_prob, with P_stat and P_adapt for comparison.
+    """The distribution of durations on a path, with P_stat and P_adapt for comparison.
 
+    `model`: mixed, the travel times with effects of people; prob, the paper's P_prob, for models
+    fitted before there was mixed.
     `assumed`: dependencies that were not given. `outside`: those beyond the walks that the model
     was fitted to, where it extrapolates. `lost`: draws that did not arrive and were drawn again.
     `durations_s` are sorted. `kinds`: includes synthetic if the model's people include synthetic
@@ -215,6 +250,7 @@ class PredictionView(BaseModel):
     """
 
     points_m: list[Point]
+    model: Literal["mixed", "prob"]
     dependencies: dict[str, float]
     assumed: list[str]
     outside: list[str]

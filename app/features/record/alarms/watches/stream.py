@@ -125,7 +125,7 @@ class StreamWatch:
         if count == 0:
             return
         self.tally.flagged += count
-        what = "a value that is not a number" if found.non_finite.any() else "a broken rotation"
+        what = "no number or no place in a room" if found.non_finite.any() else "a broken rotation"
         yield self._condition(
             "bad_values",
             f"{count} frame(s) of the {self.stream} stream hold {what}; stored and left out",

@@ -87,8 +87,8 @@ HEADSET = StateCheck(
             "fail",
             Words(en="Paired, not connected", de="Gekoppelt, nicht verbunden"),
             remedy=Words(
-                en="Wake the headset and start its program.",
-                de="Wecken Sie das Headset auf und starten Sie sein Programm.",
+                en="Wake the headset and open the page /vr in its browser.",
+                de="Wecken Sie das Headset auf und öffnen Sie in seinem Browser die Seite /vr.",
             ),
         ),
         Finding("ok", "ok", Words(en="Paired and connected", de="Gekoppelt und verbunden")),

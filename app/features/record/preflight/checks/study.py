@@ -1,8 +1,5 @@
 """Check that the study, its instruments and its avatar are stored unchanged and translated."""
 
-from sqlalchemy import select
-from sqlalchemy.orm import Session
-
 from app.database import referenced_row
 from app.errors import ReembodyError
 from app.features.design.instruments import instrument_of
@@ -10,8 +7,9 @@ from app.features.design.studies import instrument_for, protocol_of
 from app.features.movement.avatar import configuration_by_hash
 from app.features.record.preflight.check import Finding, Found, Situation, StateCheck
 from app.features.record.sessions import plan_of
-from app.models import AvatarVersion, StudyVersion
+from app.models import StudyVersion
 from app.protocol import sha256_of
+from app.science.avatar.configuration import missing_part_problems
 from app.texts import Words
 
 SHORT = 12
@@ -73,24 +71,18 @@ def _configuration(situation: Situation) -> Found:
     """Check that the content of the study, and of any avatar, matches the recorded hashes."""
     db, session, version = situation.db, situation.session, _version(situation)
     details = [f"study v{version.number} {version.content_hash[:SHORT]}"]
-    sound = sha256_of(version.canonical_json) == version.content_hash
-    if session.avatar_configuration_hash is not None:
-        details.append(f"avatar {session.avatar_configuration_hash[:SHORT]}")
-        sound = sound and _is_intact(db, session.avatar_configuration_hash)
-    return Found("ok" if sound else "differs", details=tuple(details))
-
-
-def _is_intact(db: Session, content_hash: str) -> bool:
-    """Return whether an avatar's configuration is stored unchanged and can be parsed."""
-    query = select(AvatarVersion.canonical_json).where(AvatarVersion.content_hash == content_hash)
-    content = db.scalar(query.limit(1))
-    if content is None or sha256_of(content) != content_hash:
-        return False
+    if sha256_of(version.canonical_json) != version.content_hash:
+        return Found("differs", details=tuple(details))
+    if session.avatar_configuration_hash is None:
+        return Found("ok", details=tuple(details))
+    details.append(f"avatar {session.avatar_configuration_hash[:SHORT]}")
     try:
-        configuration_by_hash(db, content_hash)
-    except ValueError:
-        return False
-    return True
+        configuration = configuration_by_hash(db, session.avatar_configuration_hash)
+    except (ReembodyError, ValueError):
+        return Found("differs", details=tuple(details))
+    for missing in missing_part_problems(configuration):
+        return Found("incomplete", details=(*details, missing.message))
+    return Found("ok", details=tuple(details))
 
 
 CONFIGURATION = StateCheck(
@@ -102,6 +94,21 @@ CONFIGURATION = StateCheck(
             "fail",
             Words(en="Changed since it was saved", de="Seit dem Speichern verändert"),
             remedy=_RESTORE,
+        ),
+        Finding(
+            "incomplete",
+            "fail",
+            Words(
+                en="The avatar lacks parts of the body",
+                de="Dem Avatar fehlen Teile des Körpers",
+            ),
+            remedy=Words(
+                en="Save a version of the avatar in which these parts have all their axes, name it "
+                "in a new version of the study, and start the session with that.",
+                de="Speichern Sie eine Version des Avatars, in der diese Teile alle ihre Achsen "
+                "haben, nennen Sie sie in einer neuen Version der Studie und beginnen Sie die "
+                "Sitzung damit.",
+            ),
         ),
         Finding("ok", "ok", Words(en="Unchanged", de="Unverändert")),
     ),

@@ -85,7 +85,7 @@ def _require_avatar(state: SessionState, command: c.ChangeAvatar) -> None:
 def _report(state: SessionState, command: c.ReportAvatarChange) -> list[e.Event]:
     """Return the event of a headset's report; an unknown revision is refused."""
     changes = state.avatar_changes
-    if changes is None or command.revision > changes.revision:
+    if changes is None or not 1 <= command.revision <= changes.revision:
         raise Refused(
             f"no change of the avatar has the revision {command.revision}",
             value=command.revision,

@@ -78,10 +78,16 @@ def _decide_headset(
 
 
 def _report(plan: Sequence[Step], state: SessionState, command: c.Report) -> list[e.Event]:
-    """Decide a headset's report; if it started a clock after a refusal, also request a pause."""
+    """Decide a headset's report; if it started a clock against a refusal, also request a pause.
+
+    So it is if a headset resumes although the participant asked to stop after the operator's
+    request, which has lapsed: a resumption closes every earlier wish.
+    """
     decided = decide_report(plan, state, command)
     starts = isinstance(decided[0], e.PhaseStarted | e.PhaseResumed | e.WalkBackEnded)
-    if state.refused_consent is None or not starts:
+    is_refused = starts and state.refused_consent is not None
+    is_overrun = state.stop_asked and isinstance(decided[0], e.PhaseResumed)
+    if not is_refused and not is_overrun:
         return decided
     return [*decided, e.PauseRequested(phase_id=command.phase_id)]
 

@@ -100,9 +100,21 @@ def _marked(state: SessionState, event: e.Event) -> SessionState:
         case e.CalibrationRequested() | e.TrackerShifted() | e.CalibrationReported():
             return replace(state, calibration=_calibration(state, event))
         case e.StopAsked() | e.StopClosed():
-            return replace(state, stop_asked=isinstance(event, e.StopAsked))
+            return _stop_wish(state, is_open=isinstance(event, e.StopAsked))
         case _:
             return replace(state, erased=True)
+
+
+def _stop_wish(state: SessionState, *, is_open: bool) -> SessionState:
+    """Open or close the participant's wish to stop.
+
+    A request to resume that the headset has not confirmed yet lapses: whoever made it did not know
+    of the wish.
+    """
+    phase = state.phase
+    if is_open and phase is not None:
+        phase = replace(phase, resuming=False)
+    return replace(state, stop_asked=is_open, phase=phase)
 
 
 def _avatar_changed(
@@ -168,7 +180,9 @@ def _clocked(phase: PhaseState | None, event: e.Event) -> PhaseState | None:
                 status=PhaseStatus.PAUSED,
                 active_s=active_s,
                 pausing=False,
-                resuming=False,
+                # The report of a pause that is known already takes nothing back: the operator's
+                # request to resume is newer than it.
+                resuming=phase.resuming and phase.status is PhaseStatus.PAUSED,
                 pause_cause=cause,
             )
         case e.ResumeRequested():

@@ -10,6 +10,7 @@ from app.features.results.analysis.codebook.equipment import (
     CALIBRATIONS,
     CLOCK_MAPPING,
     CLOCK_PROBES,
+    HEADSET_TESTS,
 )
 from app.features.results.analysis.codebook.headset import BODY_CALIBRATIONS, GOAL_STATES
 from app.features.results.analysis.codebook.movement import (
@@ -46,6 +47,7 @@ TABLES: dict[str, str] = {
     "body_calibrations": "One row per calibration of a headset to the participant, and part.",
     "events": "One row per event of a session's log: the audit trail.",
     "calibrations": "One row per measurement of the equipment's own delay; of no one session.",
+    "headset_tests": "One row per self-test of a headset and figure; of no one session.",
     "codebook": "One row per column of the other files.",
     "samples": "One file per session, one row per frame: target and actual body side by side.",
     "fingers": "One file per session that recorded fingers; one row per frame, as in samples.",
@@ -71,6 +73,7 @@ CODEBOOK: tuple[Column, ...] = (
     *BODY_CALIBRATIONS,
     *EVENTS,
     *CALIBRATIONS,
+    *HEADSET_TESTS,
     _B.text(
         "table",
         "The file that the column is in; samples and fingers stand for all files in these folders.",

@@ -1,10 +1,11 @@
-"""The columns of clock_probes.csv, clock_mapping.csv and calibrations.csv, and of mapped times."""
+"""The columns of the equipment's tables (clocks, calibrations, self-tests) and mapped times."""
 
 from app.features.results.analysis.codebook.column import Column, Describe, session_columns
 
 _P = Describe("clock_probes")
 _M = Describe("clock_mapping")
 _C = Describe("calibrations")
+_T = Describe("headset_tests")
 CALIBRATIONS: tuple[Column, ...] = (
     _C.text("equipment", "What was measured: headset, tracking and computer together."),
     _C.number(
@@ -23,6 +24,42 @@ CALIBRATIONS: tuple[Column, ...] = (
     _C.time("recorded_at_utc", "When it was entered."),
     _C.time("retired_at_utc", "When it was marked as a mistake."),
     _C.text("retired_reason", "Why it was."),
+)
+HEADSET_TESTS: tuple[Column, ...] = (
+    _T.text("self_test_id", "Identifies the self-test."),
+    _T.time("started_at_utc", "When it began, by the headset's clock."),
+    _T.time("received_at_utc", "When its report arrived, by the server's clock."),
+    _T.number(
+        "clock_ahead_s",
+        "How far the headset's clock was ahead of the server's at least, because a report cannot "
+        "arrive before its test has ended; empty up to a minute.",
+        "s",
+        "above 60",
+    ),
+    _T.text("device", "Name of the device, if its browser tells."),
+    _T.text("user_agent", "How the browser describes itself."),
+    _T.text(
+        "inputs",
+        "What moved the body, separated by spaces.",
+        "controllers, hands, body, shins, trackers, desktop, scripted",
+    ),
+    _T.boolean("worn", "Whether it was shown in a headset and moved by a person."),
+    _T.text("rendering_mode", "Where it was shown.", "immersive, screen"),
+    _T.text("physics_where", "Where the body was computed.", "worker, page"),
+    _T.text("model_hash", "Hash of the body's model that was simulated."),
+    _T.text("errors", "Errors that the page caught."),
+    _T.text(
+        "figure",
+        "What the row is about: verdict. and its code for what is judged; otherwise its place in "
+        "the report.",
+    ),
+    _T.number("value", "Its value; empty if it was not measured.", "as unit says"),
+    _T.text(
+        "unit", "The unit of value and limit; empty for a plain number.", "s, Hz, %, B, B/s, m"
+    ),
+    _T.text("status", "The verdict; empty for figures that are not judged.", "ok, warn, fail"),
+    _T.number("limit", "The worst value that is still ok.", "as unit says"),
+    _T.boolean("at_least", "Whether value has to be at least limit, or else at most."),
 )
 
 

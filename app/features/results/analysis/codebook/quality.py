@@ -51,7 +51,12 @@ QUALITY: tuple[Column, ...] = (
         "",
         "0 and up",
     ),
-    _Q.integer("non_finite", "Frames with a value that is not a number.", "", "0 and up"),
+    _Q.integer(
+        "non_finite",
+        "Frames with a value that is not a number, or with hips more than 1 km away.",
+        "",
+        "0 and up",
+    ),
     _Q.integer(
         "backwards",
         "Frames that are not later than the one before, or whose time is no number.",

@@ -86,6 +86,11 @@ SCORES: tuple[Column, ...] = (
     _S.number("minimum", "Lowest value that the score can have."),
     _S.number("maximum", "Highest value that the score can have."),
     _S.time("submitted_at_utc", "When the form was stored."),
+    _S.text(
+        "body",
+        "Body that the condition prescribes, by the name that it was given in the lab; empty if "
+        "the participant wore the body of the avatar's configuration.",
+    ),
 )
 
 CORRECTIONS: tuple[Column, ...] = (

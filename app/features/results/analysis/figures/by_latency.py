@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import plotly.graph_objects as go
-from scipy import stats
+from scipy.special import stdtrit
 
 from app.features.results.analysis.figures.theme import (
     BLUE,
@@ -60,17 +60,26 @@ def mean_interval(values: Sequence[float]) -> MeanInterval:
     n, mean = len(array), float(array.mean())
     if n < 2:
         return MeanInterval(mean, None, n)
-    quantile = float(stats.t.ppf(0.5 + LEVEL / 2, n - 1))
+    quantile = float(stdtrit(n - 1, 0.5 + LEVEL / 2))
     return MeanInterval(mean, quantile * float(array.std(ddof=1)) / n**0.5, n)
 
 
 @dataclass(frozen=True)
 class Across:
-    """The quantity on the x axis: its column in the table, its title and its unit."""
+    """The quantity on the x axis: its column in the table, its title and its unit.
+
+    `names`: of categories, whose column has their index; they have no distance from each other, so
+    no lines are drawn between their means.
+    """
 
     column: str
     title: str
     unit: str
+    names: tuple[str, ...] = ()
+
+    def tick(self, place: float) -> str:
+        """Return the label of a place on the axis."""
+        return self.names[int(place)] if self.names else f"{place:g}"
 
 
 LATENCY = Across("latency_ms", "added latency (ms)", "ms")
@@ -111,7 +120,9 @@ def latency_figure(
         counts = own.groupby("x")["value"].count()
         figure.update_xaxes(
             title_text=across.title,
-            ticktext=[f"{place:g}<br>n = {int(counts.get(place, 0))}" for place in places],
+            ticktext=[
+                f"{across.tick(place)}<br>n = {int(counts.get(place, 0))}" for place in places
+            ],
             row=1,
             col=column,
         )
@@ -209,8 +220,13 @@ def _people(own: pd.DataFrame, unit: str, across: Across, legend: bool) -> go.Sc
         showlegend=legend,
         line={"color": colour, "width": 1},
         marker={"color": colour, "size": 5, "symbol": "circle-open"},
-        hovertemplate=f"%{{text}}<br>%{{y:.3g}} {unit} at %{{x:g}} {across.unit}<extra></extra>",
+        hovertemplate=f"%{{text}}<br>%{{y:.3g}} {unit}{_place_words(across)}<extra></extra>",
     )
+
+
+def _place_words(across: Across) -> str:
+    """Return the end of a hover text: where on the axis; categories stand below the axis."""
+    return "" if across.names else f" at %{{x:g}} {across.unit}"
 
 
 def _means(own: pd.DataFrame, limb: str, unit: str, across: Across) -> go.Scatter:
@@ -227,12 +243,12 @@ def _means(own: pd.DataFrame, limb: str, unit: str, across: Across) -> go.Scatte
             "width": 6,
         },
         customdata=[[cell.n, cell.words(unit)] for cell in means.values()],
-        mode="lines+markers",
+        mode="markers" if across.names else "lines+markers",
         name=f"mean, {limb}",
         line={"color": colour, "width": 3, "dash": dash},
         marker={"color": colour, "size": 10, "symbol": symbol},
         hovertemplate=(
-            f"mean %{{y:.3g}} %{{customdata[1]}} at %{{x:g}} {across.unit}"
+            f"mean %{{y:.3g}} %{{customdata[1]}}{_place_words(across)}"
             "<br>n = %{customdata[0]}<extra></extra>"
         ),
     )

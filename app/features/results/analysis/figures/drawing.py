@@ -17,7 +17,7 @@ class Drawing:
     """A figure with its texts; without a figure, `empty` is a sentence that says what is missing.
 
     `n`: number of participants. `data`: the rows that were drawn, for a file. `wide`: the figure
-    needs the full width of the page.
+    needs the full width of the page. `every_body`: it has all bodies, even if one was chosen.
     """
 
     key: str
@@ -29,6 +29,7 @@ class Drawing:
     data: pd.DataFrame = field(default_factory=pd.DataFrame)
     group: Group = "tasks"
     wide: bool = False
+    every_body: bool = False
 
     def as_json(self) -> dict[str, Any] | None:
         """Return the figure in the form that plotly.js reads, or None if there is no figure."""

@@ -47,6 +47,7 @@ def progress_drawing(
         else sorted({*orders, *own}, key=lambda name: (_latencies_ms(name), name))
     )
     in_ms = not blinded and all(map(_latencies_ms, names))
+    shown = names if blinded else [name.replace(" ", " → ") for name in names]
     figure = new_figure()
     for state, (statuses, colour, pattern) in _STATES.items():
         counts = own[status.isin(statuses)].value_counts()
@@ -54,7 +55,7 @@ def progress_drawing(
             continue
         figure.add_trace(
             go.Bar(
-                x=[name.replace(" ", " → ") if not blinded else name for name in names],
+                x=shown,
                 # Bars of height 0 would still draw their edges.
                 y=[int(counts.get(name, 0)) or None for name in names],
                 name=state,
@@ -64,7 +65,9 @@ def progress_drawing(
         )
     figure.update_layout(barmode="stack")
     axis = "order of added latencies (ms)" if in_ms else "order of conditions"
-    figure.update_xaxes(title_text=axis, type="category")
+    # In one line the orders of neighbouring bars would run into each other.
+    labels = [name.replace(" → ", " →<br>") for name in shown]
+    figure.update_xaxes(title_text=axis, type="category", tickvals=shown, ticktext=labels)
     figure.update_yaxes(title_text="sessions (count)", rangemode="tozero")
     if own.value_counts().max() <= FEW:
         # By default, plotly would label fractions of sessions.

@@ -13,6 +13,7 @@ import pandas as pd
 from app.features.record.ledger import planned_slots
 from app.features.results.analysis.figures.achieved import achieved_drawing
 from app.features.results.analysis.figures.body_map import joint_error_body_drawing
+from app.features.results.analysis.figures.by_body import by_body_drawings
 from app.features.results.analysis.figures.completions import completions_drawing, learning_drawing
 from app.features.results.analysis.figures.contact_map import contact_map_drawing
 from app.features.results.analysis.figures.contacts import contacts_drawing
@@ -34,11 +35,21 @@ from app.protocol import StudyProtocol
 
 
 class Rows:
-    """The data that pass a filter, and the valid rows of their tables, selected on first use."""
+    """The data that pass a filter, and the valid rows of their tables, selected on first use.
 
-    def __init__(self, filtered: Material, *, invalid: bool) -> None:
+    `every_body`: the data of every body that pass it, where the filter is for one body.
+    """
+
+    def __init__(
+        self, filtered: Material, *, invalid: bool, every_body: Material | None = None
+    ) -> None:
         self.filtered = filtered
         self.invalid = invalid
+        self._every_body = filtered if every_body is None else every_body
+
+    def by_body(self, group: Group) -> Iterator[Drawing]:
+        """Yield the measures of a group with each body, where a study varies bodies."""
+        return by_body_drawings(self._every_body, group, invalid=self.invalid)
 
     @cached_property
     def phases(self) -> pd.DataFrame:
@@ -100,6 +111,7 @@ def orders_of(protocol: StudyProtocol) -> list[str]:
 
 
 FIGURES: tuple[Figure, ...] = (
+    Figure("embodiment", lambda rows: rows.by_body("embodiment")),
     Figure("embodiment", lambda rows: embodiment_drawings(rows.counting(rows.filtered.scores))),
     Figure(
         "answers",
@@ -107,10 +119,12 @@ FIGURES: tuple[Figure, ...] = (
             rows.counting(rows.filtered.answers), rows.filtered.instruments
         ),
     ),
+    Figure("tasks", lambda rows: rows.by_body("tasks")),
     Figure.one("tasks", lambda rows: completions_drawing(rows.phases)),
     Figure.one("tasks", lambda rows: learning_drawing(rows.phases)),
     Figure.one("tasks", lambda rows: contacts_drawing(rows.touching, rows.contacts), wide=True),
     Figure.one("tasks", lambda rows: contact_map_drawing(rows.touching, rows.contacts)),
+    Figure("movement", lambda rows: rows.by_body("movement")),
     Figure.one("movement", lambda rows: joint_error_body_drawing(rows.errors)),
     Figure.one("movement", lambda rows: joint_error_drawing(rows.errors)),
     Figure.one("movement", lambda rows: achieved_drawing(rows.phases)),

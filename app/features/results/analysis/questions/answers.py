@@ -12,7 +12,10 @@ from app.features.results.analysis.material import Material, n_not_valid
 from app.features.results.analysis.questions.descriptives import descriptive
 from app.features.results.analysis.questions.limb_tests import limb_results
 from app.features.results.analysis.questions.measures import (
+    LATENCY_FACTOR,
+    Factor,
     Measure,
+    body_factor,
     completed,
     left_out,
     measures_of,
@@ -35,8 +38,9 @@ DECLARED = (
     "The tests on this page were not preregistered and are exploratory."
 )
 BODIES = (
-    "Conditions of this study share latencies and differ in their bodies, so each test covers "
-    "one body. A preregistered primary test compares all conditions."
+    "Conditions of this study share latencies and differ in their bodies: bodies are compared at "
+    "each latency that several of them share, and latencies for each body. A preregistered "
+    "primary test compares all conditions."
 )
 OPEN = "Tests use valid completed sessions; open sessions may still change and are left out."
 SIMULATED = "These are simulated data: they test the analysis and say nothing about people."
@@ -62,9 +66,21 @@ def answers_of(material: Material) -> StatisticsResults:
 
 
 def _measures_by_body(material: Material, alpha: float) -> Iterator[MeasureView]:
-    """Yield the results of each body on its own where conditions share latencies."""
+    """Yield comparisons of bodies at one latency, and of latencies for each body.
+
+    Where latencies tell conditions apart, there is nothing but the comparison of latencies.
+    """
     if not material.bodies:
         yield from _measures(material, alpha)
+    for latency_ms in material.shared_latencies_ms:
+        factor = body_factor(material.bodies)
+        place = f"bodies at {latency_ms:g} ms"
+        for one in _compared(material.at_latency(latency_ms), alpha, factor):
+            named = {
+                "key": f"{one.key}_bodies_{latency_ms:g}ms",
+                "title": f"{one.title}, {place}",
+            }
+            yield one.model_copy(update=named)
     for body in material.bodies:
         for one in _measures(material.of_body(body), alpha):
             named = {"key": f"{one.key}_{body}", "title": f"{one.title}, body {body}"}
@@ -81,13 +97,25 @@ def _notes(material: Material) -> list[str]:
 
 
 def _measures(material: Material, alpha: float) -> Iterator[MeasureView]:
-    out = left_out(material)
-    found = [
+    found = _tested(material, LATENCY_FACTOR)
+    yield from _compared(material, alpha, LATENCY_FACTOR, found)
+    yield from _explored(material, found, left_out(material))
+
+
+def _tested(material: Material, factor: Factor) -> list[Measure]:
+    return [
         one
-        for one in measures_of(material)
+        for one in measures_of(material, factor)
         if one.values["participant_code"].nunique() >= MIN_TESTED
     ]
-    for measure in found:
+
+
+def _compared(
+    material: Material, alpha: float, factor: Factor, found: Sequence[Measure] | None = None
+) -> Iterator[MeasureView]:
+    """Yield the results of every measure at two levels of the factor or more."""
+    out = left_out(material)
+    for measure in _tested(material, factor) if found is None else found:
         if len(measure.levels) < MIN_TESTED:
             continue
         n = int(measure.values["participant_code"].nunique())
@@ -102,7 +130,6 @@ def _measures(material: Material, alpha: float) -> Iterator[MeasureView]:
             glance=_glance(measure, results),
             results=[one.view() for one in results],
         )
-    yield from _explored(material, found, out)
 
 
 def _results(measure: Measure, alpha: float) -> Iterator[TestReport]:
@@ -120,8 +147,9 @@ def _glance(measure: Measure, results: Sequence[TestReport]) -> list[GlanceView]
     return [
         GlanceView(
             limb=limb,
+            factor="latency" if measure.factor.order is None else "body",
             differ=text.get(f"friedman_{limb}"),
-            first=text.get(f"planned_{limb}"),
+            first=text.get(f"planned_{limb}", text.get(f"pairs_{limb}")),
             trend=text.get(f"trend_{limb}"),
             way=brief[f"trend_{limb}"].way if f"trend_{limb}" in brief else None,
         )

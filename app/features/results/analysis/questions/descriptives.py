@@ -16,10 +16,12 @@ def descriptive(measure: Measure) -> TestReport:
     """Return the mean, standard deviation and median of every cell of the design."""
     rows = []
     for limb in measure.limbs:
-        for latency, column in measure.table(limb).items():
+        columns = (column for _, column in measure.table(limb).items())
+        for level, column in zip(measure.levels, columns, strict=True):
             values = column.dropna().to_numpy(dtype=np.float64)
-            rows.append((limb, f"{latency:g}", *_cell(values), *_share(measure, values)))
-    cells = [f"{row[0]} {row[1]} ms M = {row[3]}, SD = {row[5]}" for row in rows]
+            rows.append((limb, level, *_cell(values), *_share(measure, values)))
+    words = measure.factor.words
+    cells = [f"{row[0]} {words(row[1])} M = {row[3]}, SD = {row[5]}" for row in rows]
     shares = () if measure.maximum is None else ("mean share of maximum",)
     unit = measure.unit
     return TestReport(
@@ -28,7 +30,7 @@ def descriptive(measure: Measure) -> TestReport:
         sentence=f"Every cell of the design, in {unit}. {_maximum_words(measure)}",
         apa=f"{measure.title}: {'; '.join(cells)}",
         columns=(
-            *("task", "latency (ms)", "n", f"mean ({unit})", "95 % BCa CI", "SD", "median"),
+            *("task", measure.factor.heading, "n", f"mean ({unit})", "95 % BCa CI", "SD", "median"),
             *shares,
         ),
         rows=rows,

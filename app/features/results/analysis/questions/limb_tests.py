@@ -2,16 +2,17 @@
 
 They test whether latencies differ (Friedman), which differ from the smallest (Wilcoxon, Holm), and
 whether the measure rises or falls with latency (Page, one-sided where a direction was predicted).
+Bodies have no order: of these, all pairs are compared, and there is no trend.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from app.features.results.analysis.questions.measures import Measure
+from app.features.results.analysis.questions.measures import LATENCY_FACTOR, Factor, Measure
 from app.features.results.analysis.questions.words import (
     NONE,
     Brief,
@@ -39,8 +40,10 @@ from app.science.statistics import (
     directional,
     friedman,
     page_trend,
+    pairwise,
 )
 
+_PAIR = 2
 WILCOXON, PAGE = statistical_test("against_reference"), statistical_test("page_trend")
 FRIEDMAN = statistical_test("friedman")
 REPORTED = frozenset({"friedman", "page_trend", "against_reference", "rm_anova"})
@@ -51,7 +54,7 @@ REPORTED = frozenset({"friedman", "page_trend", "against_reference", "rm_anova"}
 class LimbData:
     """The data of one measure for one limb, with the alpha to test at.
 
-    `table`: (n, L) participants x latencies, NaN where there is no value.
+    `table`: (n, L) participants x levels of the factor, NaN where there is no value.
     """
 
     measure: Measure
@@ -61,7 +64,7 @@ class LimbData:
 
     @property
     def complete(self) -> FloatArray:
-        """Return the rows of the participants with a value at every latency."""
+        """Return the rows of the participants with a value at every level."""
         return complete_rows(self.table)[0]
 
     @property
@@ -70,12 +73,12 @@ class LimbData:
         return f"{self.measure.title}, {self.limb} task"
 
 
-def apa_of(one: Comparison) -> str:
+def apa_of(one: Comparison, factor: Factor = LATENCY_FACTOR) -> str:
     """Return a comparison as one line for a paper."""
     if one.test.degenerate:
-        return f"{one.a} vs. {one.b} ms: not tested, {one.test.degenerate}"
+        return f"{one.a} vs. {factor.words(one.b)}: not tested, {one.test.degenerate}"
     return (
-        f"{one.a} vs. {one.b} ms: W = {number(one.test.w, 1)}, n = {one.test.n}, "
+        f"{one.a} vs. {factor.words(one.b)}: W = {number(one.test.w, 1)}, n = {one.test.n}, "
         f"{p_words(one.test.p)}, Holm-adjusted {p_words(one.p_holm)}, rank-biserial r = "
         f"{bounded(one.test.rank_biserial, 2)}"
     )
@@ -94,23 +97,27 @@ def signed_cells(one: Comparison) -> tuple[str, str, str, str]:
 
 
 def listwise(data: LimbData) -> str:
-    """Return a sentence on how many participants lack a latency, empty if none does."""
-    left = len(data.table) - len(data.complete)
-    return f"{left} participants who did not complete every latency are left out." if left else ""
+    """Return a sentence on how many participants lack a level, empty if none does."""
+    left, name = len(data.table) - len(data.complete), data.measure.factor.name
+    return f"{left} participants who did not complete every {name} are left out." if left else ""
 
 
 def signed_floor(found: AgainstReference) -> str:
     """Return a warning if n is too small for the signed-rank test to reach significance."""
     sides = 1.0 if found.alternative != "two-sided" else 2.0
-    family = len(found.comparisons)
-    most = max((one.test.n - one.test.n_zero for one in found.comparisons), default=0)
+    return _signed_floor(found.comparisons, sides, found.alpha)
+
+
+def _signed_floor(comparisons: Sequence[Comparison], sides: float, alpha: float) -> str:
+    family = len(comparisons)
+    most = max((one.test.n - one.test.n_zero for one in comparisons), default=0)
     floor = min(1.0, sides * family * 0.5**most)
-    if floor <= found.alpha:
+    if floor <= alpha:
         return ""
     return (
         f"Too few participants for any result: with {most} differences other than zero and "
         f"{family} comparisons the smallest possible adjusted p is {bounded(floor)}, above α = "
-        f"{bounded(found.alpha, 2)}."
+        f"{bounded(alpha, 2)}."
     )
 
 
@@ -140,8 +147,9 @@ def trend(data: LimbData) -> TestReport:
 
 
 def _two_sided_trend(data: LimbData, found: PageTrend) -> TestReport:
-    p, way = min(1.0, 2.0 * min(found.p, found.p_falling)), _direction(found)
-    cells = (number(found.statistic, 1), p_cell(found.p), p_cell(found.p_falling), p_cell(p))
+    p, way = min(1.0, 2.0 * min(found.p_rises, found.p_falls)), _direction(found)
+    cells = (number(found.statistic, 1), p_cell(found.p_rises), p_cell(found.p_falls), p_cell(p))
+    method = "exact given the ties" if found.method == "exact" else found.method
     return TestReport(
         key=f"trend_{data.limb}",
         title=f"{data.limb.capitalize()}: Is there a trend along latency?",
@@ -151,22 +159,22 @@ def _two_sided_trend(data: LimbData, found: PageTrend) -> TestReport:
         ),
         apa=(
             f"{data.name}: Page’s L = {number(found.statistic, 1)}, N = {found.n}, two-sided "
-            f"{p_words(p)} ({found.method})"
+            f"{p_words(p)} ({method})"
         ),
         columns=("L", "p (rises)", "p (falls)", "p (two-sided)", "n"),
         rows=[(*cells, str(found.n))],
-        method=f"Page’s trend test, {found.method}, doubled one-sided p. {listwise(data)}",
+        method=f"Page’s trend test, {method}, doubled one-sided p. {listwise(data)}",
         source=PAGE.source,
-        warnings=(error_rate_warning("page"),),
+        warnings=(error_rate_warning("page_given_ties"),),
         exploratory=True,
         brief=Brief(p_words(p), way),
     )
 
 
 def _direction(found: PageTrend) -> Direction | None:
-    if found.p == found.p_falling:
+    if math.isclose(found.p_rises, found.p_falls):
         return None
-    return "rises" if found.p < found.p_falling else "falls"
+    return "rises" if found.p_rises < found.p_falls else "falls"
 
 
 def _predicted_trend(data: LimbData, found: DirectionalHypothesis) -> TestReport:
@@ -210,13 +218,7 @@ def limb_results(measure: Measure, limb: str, alpha: float) -> Iterator[TestRepo
     A test that cannot be computed is reported with the reason.
     """
     data = LimbData(measure, limb, measure.table(limb).to_numpy(dtype=np.float64), alpha)
-    reports: list[tuple[Callable[[LimbData], TestReport], str, str]] = [
-        (_friedman, "friedman", FRIEDMAN.question),
-        (_planned, "planned", f"Each latency against {measure.levels[0]} ms"),
-        (trend, "trend", PAGE.question),
-        *((partial(_further, one), one.key, one.question) for one in further_tests()),
-    ]
-    for report, key, title in reports:
+    for report, key, title in _reports_of(measure):
         try:
             yield report(data)
         except StatisticsError as error:
@@ -224,6 +226,33 @@ def limb_results(measure: Measure, limb: str, alpha: float) -> Iterator[TestRepo
             yield TestReport(
                 f"{key}_{limb}", heading, f"This cannot be tested. {error}", "", (), (), "", ""
             )
+
+
+def _reports_of(measure: Measure) -> list[tuple[Callable[[LimbData], TestReport], str, str]]:
+    """Return what is reported of a limb, with the key and the title of each report."""
+    levels, factor = measure.levels, measure.factor
+    differ = (_friedman, "friedman", _differ(measure))
+    if factor.order is None:
+        return [
+            differ,
+            (_planned, "planned", f"Each latency against {levels[0]} ms"),
+            (trend, "trend", PAGE.question),
+            *((partial(_further, one), one.key, one.question) for one in further_tests()),
+        ]
+    further = [
+        one
+        for one in further_tests()
+        if "two_sided" in one.directions and len(levels) >= one.fewest_conditions
+    ]
+    return [
+        *([differ] if len(levels) >= FRIEDMAN.fewest_conditions else []),
+        (_pairs, "pairs", f"Every pair of {factor.plural}"),
+        *((partial(_further, one), one.key, one.question) for one in further),
+    ]
+
+
+def _differ(measure: Measure) -> str:
+    return f"Do the {measure.factor.plural} differ?"
 
 
 def further_tests() -> list[StatisticalTest]:
@@ -252,21 +281,21 @@ def _further(test: StatisticalTest, data: LimbData) -> TestReport:
 def _friedman(data: LimbData) -> TestReport:
     found = friedman(data.complete)
     differ = "differ" if found.p <= data.alpha else "are not shown to differ"
-    levels = data.measure.levels
+    levels, factor = data.measure.levels, data.measure.factor
     apa = (
         f"{data.name}: Friedman χ²({found.df}, N = {found.n}) = {number(found.statistic)}, "
         f"{p_words(found.p)} ({found.method}), Kendall’s W = {bounded(found.kendall_w, 2)}"
     )
     return TestReport(
         key=f"friedman_{data.limb}",
-        title=f"{data.limb.capitalize()}: Do the latencies differ?",
+        title=f"{data.limb.capitalize()}: {_differ(data.measure)}",
         sentence=(
-            f"With {found.n} participants the latencies {differ}: {against(found.p, data.alpha)}; "
-            f"Kendall’s W = {bounded(found.kendall_w, 2)} (0: participants disagree, 1: all rank "
-            "the latencies in the same order)."
+            f"With {found.n} participants the {factor.plural} {differ}: "
+            f"{against(found.p, data.alpha)}; Kendall’s W = {bounded(found.kendall_w, 2)} "
+            f"(0: participants disagree, 1: all rank the {factor.plural} in the same order)."
         ),
         apa=apa,
-        columns=("latency (ms)", "mean rank"),
+        columns=(factor.heading, "mean rank"),
         rows=[(at, number(rank)) for at, rank in zip(levels, found.mean_ranks, strict=True)],
         method=f"Friedman’s test with ties, {found.method} p. {listwise(data)} {found.note}",
         source=FRIEDMAN.source,
@@ -301,16 +330,7 @@ def _planned(data: LimbData) -> TestReport:
             )
         ),
         apa=f"{data.name}: {'; '.join(parts)}",
-        columns=(
-            "latency (ms)",
-            "n",
-            f"Δ median ({data.measure.unit})",
-            "Δ mean [95 % BCa CI]",
-            "W",
-            "p",
-            "p (Holm)",
-            "rank-biserial",
-        ),
+        columns=_columns(data, "latency (ms)"),
         rows=[_row(data, one) for one in found.comparisons],
         method=(
             "Wilcoxon’s signed-rank tests, two-sided, exact given the ties, differences of zero "
@@ -322,6 +342,49 @@ def _planned(data: LimbData) -> TestReport:
         warnings=(floor, error_rate_warning("wilcoxon_holm")),
         brief=None if floor else Brief(f"{first} ms" if first else ""),
     )
+
+
+def _pairs(data: LimbData) -> TestReport:
+    """Report the exact signed-rank test of every pair of levels that have no order."""
+    levels, factor = data.measure.levels, data.measure.factor
+    found = pairwise(data.table, levels)
+    differing = [
+        f"{one.a} and {one.b}"
+        for one in found
+        if not one.test.degenerate and one.p_holm <= data.alpha
+    ]
+    verdict = f"{'; '.join(differing)} differ" if differing else f"No two {factor.plural} differ"
+    floor = _signed_floor(found, 2.0, data.alpha)
+    brief = "" if not differing else "; ".join(differing)
+    if len(levels) == _PAIR and not found[0].test.degenerate:
+        brief = p_words(found[0].p_holm)
+    return TestReport(
+        key=f"pairs_{data.limb}",
+        title=f"{data.limb.capitalize()}: Every pair of {factor.plural}",
+        sentence=(
+            f"{verdict} at α = {bounded(data.alpha, 2)} over all {len(found)} comparisons."
+            if len(found) > 1
+            else f"{verdict} at α = {bounded(data.alpha, 2)}."
+        ),
+        apa=f"{data.name}: {'; '.join(apa_of(one, factor) for one in found)}",
+        columns=_columns(data, factor.plural),
+        rows=[(f"{one.a} − {one.b}", *_row(data, one)[1:]) for one in found],
+        method=(
+            "Wilcoxon’s signed-rank tests, two-sided, exact given the ties, differences of zero "
+            f"left out; Holm’s rule over {len(found)} comparisons; participants without one of "
+            f"the two are left out of a comparison. {error_rate_warning('bca_mean')}"
+        ),
+        source=WILCOXON.source,
+        warnings=(floor, error_rate_warning("wilcoxon_holm")),
+        exploratory=True,
+        brief=None if floor else Brief(brief),
+    )
+
+
+def _columns(data: LimbData, compared: str) -> tuple[str, ...]:
+    """Return the columns of a table of comparisons, the first with what is compared."""
+    medians = f"Δ median ({data.measure.unit})"
+    return compared, "n", medians, "Δ mean [95 % BCa CI]", "W", "p", "p (Holm)", "rank-biserial"
 
 
 def _row(data: LimbData, one: Comparison) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The measures that are tested: one value per participant, limb and latency.
+"""The measures that are tested: one value per participant, limb and latency, or body.
 
 Only valid rows of valid completed sessions are tested. A value is the mean of a participant's rows
 in one cell of the design. Participants without a cell are left out of the tests that need all of
@@ -6,12 +6,13 @@ them, and are listed with the reason.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
-from app.features.results.analysis.figures.by_latency import per_participant
+from app.features.results.analysis.figures.by_latency import LATENCY, per_participant
+from app.features.results.analysis.figures.fingers import finger_angles
 from app.features.results.analysis.figures.joint_errors import task_angles
 from app.features.results.analysis.material import Material
 from app.protocol import COUNTED_KINDS
@@ -24,11 +25,44 @@ FALLS: frozenset[str] = frozenset({"agency"})
 _SHOWN = 12
 
 
+@dataclass(frozen=True)
+class Factor:
+    """What conditions differ in: the added latency, or the body that participants wear.
+
+    `column`: of the tables. `order`: the names of its levels; None for levels that are numbers and
+    have an order of their own, so that a trend and a smallest level exist.
+    """
+
+    name: str
+    plural: str
+    column: str
+    unit: str = ""
+    order: tuple[str, ...] | None = None
+
+    @property
+    def heading(self) -> str:
+        """Return the name as the heading of a column."""
+        return f"{self.name} ({self.unit})" if self.unit else self.name
+
+    def words(self, level: str) -> str:
+        """Return a level as text with its unit."""
+        return f"{level} {self.unit}" if self.unit else level
+
+
+LATENCY_FACTOR = Factor("latency", "latencies", LATENCY.column, "ms")
+
+
+def body_factor(bodies: Sequence[str]) -> Factor:
+    """Return the factor of a study whose conditions differ in these bodies."""
+    return Factor("body", "bodies", "body", order=tuple(bodies))
+
+
 @dataclass(frozen=True, eq=False)
 class Measure:
     """One measure of a study, such as a score or the contact time.
 
-    `values` has the columns participant_code, limb, latency_ms, value; `places` has the block, too.
+    `values` has the columns participant_code, limb, that of the factor, value; `places` has the
+    block, too.
     `maximum`: the maximum of a score whose range is symmetric about 0. `continuous`: seconds,
     degrees and counts, for which means and models of means are meaningful.
     """
@@ -42,16 +76,25 @@ class Measure:
     continuous: bool
     maximum: float | None = None
     predicted: Direction | None = None
+    factor: Factor = LATENCY_FACTOR
 
     @property
     def latencies_ms(self) -> tuple[float, ...]:
         """Return the latencies in ascending order."""
-        return tuple(sorted(float(one) for one in self.values["latency_ms"].unique()))
+        return tuple(sorted(float(one) for one in self.values[LATENCY.column].unique()))
+
+    @property
+    def _keys(self) -> tuple[float, ...] | tuple[str, ...]:
+        """Return the levels of the factor as they are in the tables."""
+        if self.factor.order is None:
+            return self.latencies_ms
+        used = set(self.values[self.factor.column])
+        return tuple(level for level in self.factor.order if level in used)
 
     @property
     def levels(self) -> tuple[str, ...]:
-        """Return the latencies as text, in ascending order."""
-        return tuple(f"{one:g}" for one in self.latencies_ms)
+        """Return the levels of the factor as text: latencies ascending, bodies as in the study."""
+        return tuple(key if isinstance(key, str) else f"{key:g}" for key in self._keys)
 
     @property
     def limbs(self) -> tuple[str, ...]:
@@ -59,13 +102,13 @@ class Measure:
         return tuple(limb for limb in LIMBS if (self.values["limb"] == limb).any())
 
     def table(self, limb: str) -> pd.DataFrame:
-        """Return the values as participants x latencies, NaN where there is no value."""
+        """Return the values as participants x levels, NaN where there is no value."""
         own = self.values[self.values["limb"] == limb]
-        wide = own.pivot(index="participant_code", columns="latency_ms", values="value")
-        return wide.reindex(columns=list(self.latencies_ms)).sort_index()
+        wide = own.pivot(index="participant_code", columns=self.factor.column, values="value")
+        return wide.reindex(columns=list(self._keys)).sort_index()
 
     def cells(self) -> FloatArray:
-        """Return the values (n, latencies, limbs) of participants with a value in every cell."""
+        """Return the values (n, levels, limbs) of participants with a value in every cell."""
         tables = [self.table(limb) for limb in self.limbs]
         everybody = sorted(set().union(*(table.index for table in tables)))
         stacked = np.stack(
@@ -79,7 +122,11 @@ class Measure:
         missing_cells: dict[str, list[str]] = {}
         for limb in self.limbs:
             for code, row in self.table(limb).iterrows():
-                lacking = [f"{at:g} ms" for at, value in row.items() if pd.isna(value)]
+                lacking = [
+                    self.factor.words(level)
+                    for level, value in zip(self.levels, row, strict=True)
+                    if pd.isna(value)
+                ]
                 if lacking:
                     missing_cells.setdefault(str(code), []).append(
                         f"{limb} at {', '.join(lacking)}"
@@ -90,10 +137,15 @@ class Measure:
         return shortened(lines)
 
 
-def measures_of(material: Material) -> Iterator[Measure]:
-    """Yield the study's measures with values: scores, contact time, completions and joint error."""
+def measures_of(material: Material, factor: Factor = LATENCY_FACTOR) -> Iterator[Measure]:
+    """Yield the study's measures with values: scores, contact time, completions, joint errors."""
+    for one in _measures_of(material, factor):
+        yield replace(one, factor=factor)
+
+
+def _measures_of(material: Material, factor: Factor) -> Iterator[Measure]:
     tested = completed(material)
-    yield from _scores(tested)
+    yield from _scores(tested, factor)
     tasks = tested.counting(tested.phases)
     tasks = tasks[tasks["phase_kind"].isin(COUNTED_KINDS)].astype({"completions": "float64"})
     yield from _measure(
@@ -102,12 +154,14 @@ def measures_of(material: Material) -> Iterator[Measure]:
         "Active seconds per phase during which a side of a box was red, whichever body part "
         "touched it.",
         tasks.rename(columns={"side_red_s": "value"}),
+        factor,
     )
     yield from _measure(
         "completions",
         ("Completed tasks", "tasks"),
         "Completed tasks per phase.",
         tasks.rename(columns={"completions": "value"}),
+        factor,
     )
     errors = task_angles(tested.counting(tested.errors))
     yield from _measure(
@@ -116,6 +170,15 @@ def measures_of(material: Material) -> Iterator[Measure]:
         "Angle between the participant's pose and the body they saw, a mean over joints and the "
         "active time of a phase. It shows the effect of latency on the body, not on the person.",
         errors.rename(columns={"mean_deg": "value"}),
+        factor,
+    )
+    yield from _measure(
+        "joint_error_fingers",
+        ("Joint error of the fingers", "deg"),
+        "The same of the fingers, a mean over their joints: only phases in which fingers were "
+        "recorded count. The joint error of the body leaves fingers out.",
+        finger_angles(tested.counting(tested.errors)).rename(columns={"mean_deg": "value"}),
+        factor,
     )
 
 
@@ -148,7 +211,7 @@ def shortened(lines: Sequence[str]) -> list[str]:
     return [*lines[:_SHOWN], *([f"and {more} more"] if more > 0 else [])]
 
 
-def _scores(tested: Material) -> Iterator[Measure]:
+def _scores(tested: Material, factor: Factor) -> Iterator[Measure]:
     scores = tested.counting(tested.scores).dropna(subset=["limb", "value"])
     for key, own in scores.groupby("instrument"):
         newest = tested.instruments[str(key), int(own["instrument_version"].max())]
@@ -164,6 +227,7 @@ def _scores(tested: Material) -> Iterator[Measure]:
                 (title, "points"),
                 f"{about} {_range_words(limits)}".strip(),
                 rows,
+                factor,
                 continuous=False,
                 maximum=_symmetric(limits),
                 predicted="falls" if score.key in FALLS else None,
@@ -196,21 +260,22 @@ def _measure(
     title_and_unit: tuple[str, str],
     about: str,
     rows: pd.DataFrame,
+    factor: Factor,
     *,
     continuous: bool = True,
     maximum: float | None = None,
     predicted: Direction | None = None,
 ) -> Iterator[Measure]:
-    complete = rows.dropna(subset=["value", "limb", "latency_ms", "block"])
+    complete = rows.dropna(subset=["value", "limb", factor.column, "block"])
     if complete.empty:
         return
-    places = ["participant_code", "limb", "latency_ms", "block"]
+    places = ["participant_code", "limb", factor.column, "block"]
     yield Measure(
         key=key,
         title=title_and_unit[0],
         unit=title_and_unit[1],
         about=about,
-        values=per_participant(complete, "value"),
+        values=per_participant(complete, "value", factor.column),
         places=complete.groupby(places)["value"].mean().reset_index(),
         continuous=continuous,
         maximum=maximum,

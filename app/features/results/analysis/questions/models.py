@@ -1,4 +1,4 @@
-"""Tests of latency and limb together: analysis of variance, mixed model and carry-over."""
+"""Tests of latency or body with limb: analysis of variance, mixed model and carry-over."""
 
 from collections.abc import Iterator, Sequence
 
@@ -44,18 +44,19 @@ _TOO_MANY = (
 
 
 def model_results(measure: Measure, alpha: float) -> Iterator[TestReport]:
-    """Yield an analysis of variance and a mixed model of latency x limb."""
+    """Yield an analysis of variance and a mixed model of the factor x limb."""
     if len(measure.limbs) < _MIN_LIMBS:
         return
+    name = measure.factor.name.capitalize()
     for test, key, title in (
-        (_anova, "rm_anova", "Latency × limb, analysis of variance"),
-        (_mixed, "mixed_model", "Latency × limb, mixed model with period"),
+        (_anova, "rm_anova", f"{name} × limb, analysis of variance"),
+        (_mixed, "mixed_model", f"{name} × limb, mixed model with period"),
     ):
         try:
             yield test(measure, alpha, key, title)
         except _UNTESTABLE as error:
             yield TestReport(
-                key, title, f"This cannot be tested. {_why(error)}", "", (), (), "", ""
+                key, title, f"This cannot be tested. {_why(error, measure)}", "", (), (), "", ""
             )
 
 
@@ -71,12 +72,13 @@ def carry_over_result(measure: Measure) -> Iterator[TestReport]:
         found = carry_over(
             places["value"].to_numpy(dtype=np.float64),
             places["participant_code"].tolist(),
-            [float(one) for one in places["latency_ms"]],
+            places[measure.factor.column].tolist(),
             [int(one) for one in places["block"]],
             further=limbs,
         )
     except _UNTESTABLE as error:
-        yield TestReport(key, title, f"This cannot be tested. {_why(error)}", "", (), (), "", "")
+        why = _why(error, measure)
+        yield TestReport(key, title, f"This cannot be tested. {why}", "", (), (), "", "")
         return
     tests: Sequence[TermTest] = [
         one
@@ -103,16 +105,17 @@ def carry_over_result(measure: Measure) -> Iterator[TestReport]:
     )
 
 
-def _why(error: Exception) -> str:
+def _why(error: Exception, measure: Measure) -> str:
     """Return the reason why no model was fitted; numerical failure means no residual variance."""
     if isinstance(error, StatisticsError):
         return str(error)
-    return "Participants, latencies and limbs explain the measure completely: nothing is left over."
+    factor = measure.factor.plural
+    return f"Participants, {factor} and limbs explain the measure completely: nothing is left over."
 
 
 def _anova(measure: Measure, alpha: float, key: str, title: str) -> TestReport:
     cells = measure.cells()
-    found = rm_anova(cells, ("latency", "limb"))
+    found = rm_anova(cells, (measure.factor.name, "limb"))
     parts = [_effect_words(one) for one in found.effects]
     comparisons = [
         f"{one.name.replace(':', ' × ')}: {against(one.p_gg, alpha)}" for one in found.effects
@@ -157,11 +160,12 @@ def _mixed(measure: Measure, alpha: float, key: str, title: str) -> TestReport:
     places = measure.places
     if places["participant_code"].nunique() > MAX_FOR_MODELS:
         return TestReport(key, title, _TOO_MANY, "", (), (), "", MIXED_SOURCE)
-    latency = factor("latency", places["latency_ms"].tolist())
+    name = measure.factor.name
+    level = factor(name, places[measure.factor.column].tolist())
     limb, period = (
         factor(a, places[b].tolist()) for a, b in (("limb", "limb"), ("period", "block"))
     )
-    design = build_design([latency, limb, period], interactions=[("latency", "limb")])
+    design = build_design([level, limb, period], interactions=[(name, "limb")])
     values = places["value"].to_numpy(dtype=np.float64)
     model = fit_mixed_model(values, places["participant_code"].tolist(), design)
     tests = term_tests(model)

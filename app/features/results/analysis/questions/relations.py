@@ -49,22 +49,24 @@ def group_of(part: str) -> str:
 def contact_share_results(material: Material) -> Iterator[TestReport]:
     """Yield, for each limb, the share of contact time by group of body parts at each latency.
 
-    If fingers were recorded in some phases only, they count as the hand everywhere.
+    Where fingers were recorded, they are a part of their own. If that is so in some of a limb's
+    phases only, it yields two reports, one of the phases with fingers and one of the others: a hand
+    without its fingers and a hand whose fingers are not known apart are not averaged.
     """
     tasks, sides = _tasks_and_sides(material)
     if sides.empty:
         return
-    whole_hands = in_some_phases(tasks)
-    if whole_hands:
-        sides = sides.assign(body_part=sides["body_part"].map(_whole_hand))
     times = part_side_times(sides).rename(columns={"body_part": "what"})
     times = times.groupby(["session_id", "phase_id", "what"])["time_s"].sum().reset_index()
     for limb, own in tasks.dropna(subset=["limb"]).groupby("limb", sort=False):
-        rows = []
-        for latency, cell in own.groupby("latency_ms"):
-            rows += _share_rows(f"{latency:g}", cell, times)
-        if rows:
-            yield _shares_report(str(limb), rows, whole_hands=whole_hands)
+        known: tuple[bool | None, ...] = (False, True) if in_some_phases(own) else (None,)
+        for with_fingers in known:
+            phases = own if with_fingers is None else own[own["fingers"] == with_fingers]
+            rows = []
+            for latency, cell in phases.groupby("latency_ms"):
+                rows += _share_rows(f"{latency:g}", cell, times)
+            if rows:
+                yield _shares_report(str(limb), rows, with_fingers=with_fingers)
 
 
 def contact_finger_results(material: Material) -> Iterator[TestReport]:
@@ -84,12 +86,6 @@ def contact_finger_results(material: Material) -> Iterator[TestReport]:
         hand = sides[(sides["limb"] == limb) & sides["body_part"].str.endswith("Hand")]
         times = part_side_times(pd.concat((named, hand.assign(body_part=PALM))))
         yield _fingers_report(str(limb), own, times)
-
-
-def _whole_hand(part: str) -> str:
-    """Return the hand of a part of a finger, and any other part unchanged."""
-    finger = finger_of(part)
-    return part if finger is None else f"{part.partition(finger)[0]}Hand"
 
 
 def _tasks_and_sides(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
@@ -162,15 +158,29 @@ def _share_rows(latency: str, cell: pd.DataFrame, times: pd.DataFrame) -> list[t
     ]
 
 
-def _shares_report(limb: str, rows: Sequence[tuple[str, ...]], *, whole_hands: bool) -> TestReport:
-    hands = (
-        " Fingers were recorded in some phases only, so their contacts count as the hand’s here."
-        if whole_hands
-        else ""
-    )
+_SHARES_OF = {
+    None: ("", "", ""),
+    False: (
+        "",
+        ", without fingers",
+        " Only the phases in which fingers were not recorded: there the hand includes them.",
+    ),
+    True: (
+        "_fingers",
+        ", with fingers",
+        " Only the phases in which fingers were recorded: there the hand is that without them.",
+    ),
+}
+"""Whether only phases with or without fingers count: ending of key, title and method."""
+
+
+def _shares_report(
+    limb: str, rows: Sequence[tuple[str, ...]], *, with_fingers: bool | None
+) -> TestReport:
+    key, title, hands = _SHARES_OF[with_fingers]
     return TestReport(
-        key=f"contact_shares_{limb}",
-        title=f"{limb.capitalize()}: Which part of the body was in contact?",
+        key=f"contact_shares{key}_{limb}",
+        title=f"{limb.capitalize()}: Which part of the body was in contact{title}?",
         sentence=(
             "Each participant’s share of contact time, averaged over participants. Shares at one "
             "latency add up to 100 %."

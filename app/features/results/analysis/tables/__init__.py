@@ -14,6 +14,7 @@ from app.features.results.analysis.tables.equipment import (
     calibrations_table,
     clock_mapping_table,
     clock_probes_table,
+    headset_tests_table,
 )
 from app.features.results.analysis.tables.headset import body_calibrations_table, goal_states_table
 from app.features.results.analysis.tables.joint_errors import (
@@ -57,6 +58,7 @@ __all__ = [
     "events_table",
     "goal_states_table",
     "has_rules",
+    "headset_tests_table",
     "joint_angles_table",
     "joint_error_course_table",
     "joint_errors_table",

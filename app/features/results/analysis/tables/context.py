@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies import protocol_of, study_by_key, versions_of
 from app.features.record.doubts import doubts_of_sessions
-from app.features.record.sessions import plan_of, state_of
+from app.features.record.sessions import plans_of, state_of
 from app.features.results.analysis.codebook import ColumnType, columns_of
 from app.features.results.analysis.schemas import Kind
 from app.models import Participant, Phase, Study, StudySession, StudyVersion
@@ -155,8 +155,9 @@ def steps_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """Return one row per step of every session: its place in the design and its valid attempt."""
     study = study_by_key(db, study_key)
     rows = []
+    plans = plans_of(db, of_kind(study, kind))
     for session in db.scalars(select(StudySession).where(of_kind(study, kind))):
-        plan, state = plan_of(db, session), state_of(session)
+        plan, state = plans[session.id], state_of(session)
         positions = _positions(plan)
         skipped = {
             (step.block, step.limb)
@@ -174,6 +175,7 @@ def steps_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
                     "limb": None if step.limb is None else str(step.limb),
                     "condition": step.condition,
                     "latency_ms": step.latency_ms,
+                    "body": step.body,
                     "attempt_that_counts": own.attempt,
                     "answered": own.status == "done" and (step.block, step.limb) not in skipped,
                 }
@@ -189,6 +191,7 @@ STEP_COLUMNS = (
     "limb",
     "condition",
     "latency_ms",
+    "body",
     "attempt_that_counts",
     "answered",
 )

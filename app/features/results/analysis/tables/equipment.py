@@ -1,4 +1,7 @@
-"""The tables of the equipment: clock probes, clock mappings and calibrations."""
+"""The tables of the equipment: clock probes, clock mappings, calibrations and self-tests."""
+
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -7,6 +10,8 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies import study_by_key
 from app.features.record.calibrations import calibrations
+from app.features.record.self_tests import SelfTestView, self_tests
+from app.features.results.analysis.codebook import columns_of
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.clocks import NS_PER_S, RunClock, run_clocks
 from app.features.results.analysis.tables.context import finished, of_kind, read, sessions_context
@@ -14,6 +19,8 @@ from app.models import ClockProbe, StudySession
 
 MS_PER_S = 1000.0
 PPM = 1e6
+_UNITS = (("bytes_per_s", "B/s"), ("bytes", "B"), ("_s", "s"), ("_hz", "Hz"), ("_m", "m"))
+"""The ends of the names of figures, and their units; a figure of another name is a number."""
 
 
 def clock_probes_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
@@ -106,3 +113,50 @@ def calibrations_table(db: Session) -> pd.DataFrame:
     frame["measured_on"] = [day.isoformat() for day in frame["measured_on"]]
     renamed = {"at": "recorded_at_utc", "retired_at": "retired_at_utc"}
     return finished(frame.rename(columns=renamed), "calibrations")
+
+
+def headset_tests_table(db: Session) -> pd.DataFrame:
+    """Return one row per self-test of a headset and figure, newest test first.
+
+    The verdicts of a test come first, with status and limit; then every figure as it was reported.
+    """
+    names = [column.name for column in columns_of("headset_tests")]
+    rows = [row for view in self_tests(db) for row in _of_self_test(view)]
+    return finished(pd.DataFrame(rows, columns=names, dtype=object), "headset_tests")
+
+
+def _of_self_test(view: SelfTestView) -> Iterator[dict[str, object]]:
+    report = view.report
+    physics = report.physics
+    test: dict[str, object] = {
+        "self_test_id": view.id,
+        "started_at_utc": report.started_at,
+        "received_at_utc": view.received_at,
+        "clock_ahead_s": view.clock_ahead_s,
+        "device": report.device.name,
+        "user_agent": report.device.user_agent,
+        "inputs": " ".join(report.device.inputs) or None,
+        "worn": view.worn,
+        "rendering_mode": report.rendering.mode,
+        "physics_where": None if physics is None else physics.where,
+        "model_hash": None if physics is None else physics.model_hash,
+        "errors": "; ".join(report.page.errors) or None,
+    }
+    for verdict in view.verdicts:
+        judged = verdict.model_dump(include={"value", "unit", "status", "limit", "at_least"})
+        yield {**test, "figure": f"verdict.{verdict.code}", **judged}
+    for name, value in _figures(report.model_dump(include=_MEASURED)):
+        unit = next((unit for end, unit in _UNITS if name.endswith(end)), None)
+        yield {**test, "figure": name, "value": value, "unit": unit}
+
+
+_MEASURED = {"duration_s", "rendering", "physics", "tracking", "storage", "page"}
+
+
+def _figures(part: dict[str, Any], path: str = "") -> Iterator[tuple[str, float]]:
+    """Yield every number of a report with its place in it."""
+    for name, value in part.items():
+        if isinstance(value, dict):
+            yield from _figures(value, f"{path}{name}.")
+        elif isinstance(value, int | float):
+            yield f"{path}{name}", float(value)

@@ -21,7 +21,9 @@ STATE_COLUMNS = {
     )
 }
 """The column of each goal in goal_states."""
-_MEASURED = ("cause", "stature_m", "span_m", "eye_height_m")
+_MEASURED = ("revision", "cause", "stature_m", "span_m", "eye_height_m")
+SEGMENT_COLUMNS = {"upper_arm": "upper_arm_m", "forearm": "forearm_m"}
+"""The column of each segment of the body that headsets measure in body_calibrations."""
 _POSE = (*(f"offset_{axis}_m" for axis in "xyz"), *(f"offset_q{axis}" for axis in "wxyz"))
 
 
@@ -49,7 +51,8 @@ def body_calibrations_table(db: Session, study_key: str, kind: Kind) -> pd.DataF
         for report in _reports(db, study_by_key(db, study_key), kind, "calibration")
         for row in _of_calibration(report.seq, report.payload)
     ]
-    names = ("session_id", "epoch", "seq", "client_t_s", *_MEASURED, "notices", "goal", "source")
+    measured = (*_MEASURED, *SEGMENT_COLUMNS.values())
+    names = ("session_id", "epoch", "seq", "client_t_s", *measured, "notices", "goal", "source")
     columns = (*names, "residual_m", *_POSE)
     return _of_sessions(db, study_key, kind, "body_calibrations", rows, columns)
 
@@ -71,7 +74,11 @@ def added_latencies(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
 
 def _of_calibration(seq: int, payload: dict[str, Any]) -> Iterator[dict[str, object]]:
     """Yield a row for each goal of a calibration; one without a goal if it names none."""
-    measured = {name: payload[name] for name in _MEASURED}
+    segments_m = payload.get("segments_m", {})
+    measured = {
+        **{name: payload.get(name) for name in _MEASURED},
+        **{column: segments_m.get(name) for name, column in SEGMENT_COLUMNS.items()},
+    }
     shared = {
         "seq": seq,
         "client_t_s": payload["t_s"],

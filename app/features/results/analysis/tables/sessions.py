@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies import protocol_of, study_by_key, versions_of
 from app.features.record.ledger import shortfalls_of
-from app.features.record.sessions import content_body, plan_of, state_of
+from app.features.record.sessions import content_body, plans_of, state_of
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
     BROKEN_OFF,
@@ -126,8 +126,9 @@ def _consents(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
     for session_id, payload, at in events:
         completed.setdefault(session_id, []).append((json.loads(payload).get("step"), at))
     rows = []
+    plans = plans_of(db, of_kind(study, kind))
     for session in db.scalars(select(StudySession).where(of_kind(study, kind))):
-        consents = {step.index for step in plan_of(db, session) if step.kind == "consent"}
+        consents = {step.index for step in plans[session.id] if step.kind == "consent"}
         if not consents:
             continue
         steps = state_of(session).steps

@@ -15,17 +15,24 @@ SEND_FROM_BYTES = 256 * 1024
 def zip_pieces(members: Iterable[Member], now: datetime) -> Iterator[bytes]:
     """Yield the archive in pieces; one that breaks off has no directory, so no program opens it."""
     sink = _Sink()
-    with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED, compresslevel=LEVEL) as archive:
+    with zipfile.ZipFile(sink, "w") as archive:
         for member in members:
-            entry = zipfile.ZipInfo(member.path, now.timetuple()[:6])
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = 0o644 << 16
-            with archive.open(entry, "w", force_zip64=True) as file:
+            with archive.open(_Entry(member.path, now), "w", force_zip64=True) as file:
                 for piece in member.pieces:
                     file.write(piece)
                     if sink.waiting >= SEND_FROM_BYTES:
                         yield sink.take()
     yield sink.take()
+
+
+class _Entry(zipfile.ZipInfo):
+    """A file in the archive, with its own level: the archive's is only for files without a date."""
+
+    def __init__(self, path: str, now: datetime) -> None:
+        super().__init__(path, now.timetuple()[:6])
+        self.compress_type = zipfile.ZIP_DEFLATED
+        self.external_attr = 0o644 << 16
+        self._compresslevel = LEVEL
 
 
 class _Sink(io.RawIOBase):

@@ -49,9 +49,10 @@ def without_conditions(table: str, frame: pd.DataFrame, hidden: Collection[str])
     for name in EMPTIED & set(masked.columns):
         masked[name] = masked[name].mask(rows)
     if "payload" in masked.columns:
-        masked.loc[rows, "payload"] = masked.loc[rows, "payload"].map(_payload)
+        of_hidden = masked.loc[rows, ["type", "payload"]].itertuples(index=False, name=None)
+        masked.loc[rows, "payload"] = [_payload(kind, text) for kind, text in of_hidden]
     return masked
 
 
-def _payload(text: str) -> str:
-    return canonical(without_condition(json.loads(text)))
+def _payload(kind: str, text: str) -> str:
+    return canonical(without_condition(kind, json.loads(text)))

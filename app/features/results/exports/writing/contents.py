@@ -6,7 +6,7 @@ read from the database while it is written; the README is written last, because 
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 
@@ -14,7 +14,7 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies import study_by_key
+from app.features.design.studies import instrument_for, study_by_key
 from app.features.people.audit import TrailHead, head_of
 from app.features.record.receipts import receipt_of
 from app.features.record.telemetry import epochs_of
@@ -34,6 +34,7 @@ from app.features.results.analysis.tables import (
     events_table,
     goal_states_table,
     has_rules,
+    headset_tests_table,
     joint_error_course_table,
     joint_errors_table,
     phases_table,
@@ -70,11 +71,22 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "goal_states": goal_states_table,
     "body_calibrations": body_calibrations_table,
 }
+EQUIPMENT_FILES: dict[str, Callable[[Session], pd.DataFrame]] = {
+    "calibrations": calibrations_table,
+    "headset_tests": headset_tests_table,
+}
+"""The tables of the lab's equipment, which are of no one study."""
 README = "README.txt"
-FOLDERS = {"samples": ".csv", "fingers": ".csv", "receipts": ".json", "imported": ".csv"}
+FOLDERS = {
+    "samples": ".csv",
+    "fingers": ".csv",
+    "receipts": ".json",
+    "protocol": ".yaml",
+    "imported": ".csv",
+}
 """The folders of an export, and the suffixes of their files."""
 TOP_LEVEL = frozenset(
-    {*(f"{name}.csv" for name in (*TABLE_FILES, "calibrations", "codebook")), README}
+    {*(f"{name}.csv" for name in (*TABLE_FILES, *EQUIPMENT_FILES, "codebook")), README}
 )
 
 
@@ -121,10 +133,14 @@ class Contents:
         for name, table in TABLE_FILES.items():
             frame = sessions if name == "sessions" else self._table(name, table)
             yield self._member(f"{name}.csv", csv_pieces(name, frame, rules=rules))
-        equipment = calibrations_table(self.db)
-        yield self._member("calibrations.csv", csv_pieces("calibrations", equipment))
+        for name, equipment in EQUIPMENT_FILES.items():
+            yield self._member(f"{name}.csv", csv_pieces(name, equipment(self.db)))
         described = codebook_frame(rules=rules)
         yield self._member("codebook.csv", csv_pieces("codebook", described))
+        # The protocol names the conditions, and a participant's own copy has only sessions.
+        if not self.hidden and self.only is None:
+            for name, text in self._protocol(study, used).items():
+                yield self._member(f"protocol/{name}", iter([text.encode()]))
         rows = sessions[["participant_code", "session_id", "simulated", "avatar"]]
         for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
             samples = SampleFile(
@@ -148,14 +164,32 @@ class Contents:
         own = frame if self.only is None else frame[frame["session_id"].isin(list(self.only))]
         return without_conditions(name, own, self.hidden)
 
+    def _protocol(self, study: Study, used: set[int]) -> dict[str, str]:
+        """Return the files of each version in use, and of its instruments: wording and formulas."""
+        files = {}
+        for version in self._versions(study, used):
+            files[f"{study.key}_version_{version.number}.yaml"] = version.source_yaml
+            for key, hash_ in sorted(version.instruments.items()):
+                source = instrument_for(self.db, version, key).source_yaml
+                files[f"instrument_{key}_{hash_[:8]}.yaml"] = source
+        return files
+
+    def _versions(self, study: Study, used: set[int]) -> Sequence[StudyVersion]:
+        """Return the versions that the sessions use, or all if there is no session."""
+        rows = self.db.scalars(
+            select(StudyVersion)
+            .where(StudyVersion.study_id == study.id)
+            .order_by(StudyVersion.number)
+        ).all()
+        return [row for row in rows if not used or row.number in used]
+
     def _has_fingers(self, session_id: str) -> bool:
         return any(epochs_of(self.db, session_id, stream) for stream in FINGER_STREAMS)
 
     def _receipt(self, session_id: str) -> Iterator[bytes]:
         """Yield the receipt of a session as JSON, computed in the transaction of this export."""
-        receipt = receipt_of(self.db, session_id)
-        shown = receipt.without_latencies() if session_id in self.hidden else receipt
-        yield json.dumps(shown.as_json(), indent=2).encode() + b"\n"
+        receipt = receipt_of(self.db, session_id, blinded=session_id in self.hidden)
+        yield json.dumps(receipt.as_json(), indent=2).encode() + b"\n"
 
     def _member(self, path: str, pieces: Iterator[bytes]) -> Member:
         return Member(path, self._counted(path, pieces))
@@ -170,14 +204,7 @@ class Contents:
         self.files.append(FileCount(path, lines, digest.hexdigest()))
 
     def _readme(self, study: Study, used: set[int], sessions: pd.DataFrame, *, rules: bool) -> str:
-        versions = self.db.scalars(
-            select(StudyVersion)
-            .where(StudyVersion.study_id == study.id)
-            .order_by(StudyVersion.number)
-        ).all()
-        hashes = {
-            row.number: row.content_hash for row in versions if not used or row.number in used
-        }
+        hashes = {row.number: row.content_hash for row in self._versions(study, used)}
         statuses = {str(key): int(n) for key, n in sessions["status"].value_counts().items()}
         blinded = int(sessions["session_id"].isin(list(self.hidden)).sum())
         origin = Origin(

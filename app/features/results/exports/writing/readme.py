@@ -35,10 +35,14 @@ Reading the files
   receipts/ holds one file per session that says how many frames were made, stored and are missing,
   whether the event log was changed, whether the completions follow from the contacts, and which
   latency the avatar really had. "complete": true means that nothing is missing.
+  protocol/, unless a condition may not be known yet, holds what was done and asked: the study's
+  file as each version had it, and its instruments with the wording, the scales and the formulas of
+  their scores.
   imported/, where it is there, holds answers that were collected elsewhere: one file per import,
   one row per form, origin = imported. They are in no table; do not pool them with the sessions.
   The hips carry no latency. latency_ms is what was added to the delay of the equipment, which
-  calibrations.csv tells as far as it was measured.
+  calibrations.csv tells as far as it was measured. headset_tests.csv has what headsets measured of
+  themselves. Both are of the lab's equipment, not of this study.
   consent_given and consent_at_utc in sessions.csv say that and when consent was given. The signed
   records hold names: they stay with the lab and are in no export.
   Audit head is the newest entry of the lab's audit trail when this was written. The lab proves with

@@ -12,6 +12,7 @@ import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
 import { usePermissions } from "../../permissions";
 import { alarmsQuery } from "../../queries";
+import { awaitsHeadset } from "../session/action";
 import {
   type Alarms,
   amount,
@@ -34,7 +35,9 @@ interface SignalStripProps {
 export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): JSX.Element {
   const { t } = useTexts();
   const first = mostUrgent(alarms.on, alarms.isAcknowledged);
-  const tone = first === undefined ? classes.fine : classes[first.severity];
+  const isAwaited = first === undefined && awaitsHeadset(session);
+  const tone =
+    first !== undefined ? classes[first.severity] : classes[isAwaited ? "warning" : "fine"];
   const acknowledged = first !== undefined && alarms.isAcknowledged(first);
   const signal = alarms.quality?.signal ?? null;
   const total = useQuery(alarmsQuery(session.id, stateOf(session))).data?.length ?? 0;
@@ -93,6 +96,7 @@ interface NoAlarmProps {
 function NoAlarm({ session, isRecording }: NoAlarmProps): JSX.Element {
   const { t } = useTexts();
   const ended = session.ended_at !== null;
+  if (awaitsHeadset(session)) return <HeadsetAwaited />;
   const connected = session.devices.some((one) => one.kind === "headset" && one.connected);
   const body: Key = !connected
     ? "signal.fine.noHeadset"
@@ -105,6 +109,20 @@ function NoAlarm({ session, isRecording }: NoAlarmProps): JSX.Element {
       <div className={classes.words} role="status">
         <div className={classes.title}>{t(ended ? "signal.over" : "signal.fine")}</div>
         <div className={classes.remedy}>{t(ended ? "signal.over.body" : body)}</div>
+      </div>
+    </div>
+  );
+}
+
+/** Nothing is being recorded yet, so the server has no alarm; but nothing can go on either. */
+function HeadsetAwaited(): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.message}>
+      <Icon name="alert" size={26} />
+      <div className={classes.words} role="status">
+        <div className={classes.title}>{t("signal.awaited")}</div>
+        <div className={classes.remedy}>{t("signal.awaited.do")}</div>
       </div>
     </div>
   );

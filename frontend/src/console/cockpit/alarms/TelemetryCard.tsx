@@ -23,7 +23,7 @@ export function TelemetryCard({ session, store }: TelemetryCardProps): JSX.Eleme
   const figures = [
     ["completions", telemetry?.completions ?? phase?.completions ?? null, ""],
     ["contacts", telemetry?.side_contacts ?? phase?.side_contacts ?? null, ""],
-    ["contactTime", phase?.side_contact_s ?? null, "s"],
+    ["contactTime", telemetry?.side_contact_s ?? phase?.side_contact_s ?? null, "s"],
   ] as const;
   if (telemetry === undefined && phase === undefined) return null;
   return (

@@ -16,26 +16,24 @@ import {
 } from "./alarms";
 
 const en = { ...pages, ...registryEn };
-const live = (code: string, more: Partial<LiveAlarm> = {}): LiveAlarm => ({
+const warning = (code: string) => ({
   code,
-  severity: "warning",
+  severity: "warning" as const,
   stream: null,
   message: code,
   value: null,
   unit: null,
+});
+const live = (code: string, more: Partial<LiveAlarm> = {}): LiveAlarm => ({
+  ...warning(code),
   joints: [],
   since: "2026-03-02T09:30:00+00:00",
   ...more,
 });
 
 const recorded = (code: string, more: Partial<Alarm> = {}): Alarm => ({
+  ...warning(code),
   id: code,
-  code,
-  severity: "warning",
-  stream: null,
-  message: code,
-  value: null,
-  unit: null,
   client_t_s: null,
   since: "2026-03-02T09:30:00Z",
   cleared_at: null,

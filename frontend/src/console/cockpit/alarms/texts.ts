@@ -19,6 +19,8 @@ export const alarmsEn = {
   "signal.fine.recording": "Movement is arriving and being stored.",
   "signal.fine.waiting": "Nothing to record yet.",
   "signal.fine.noHeadset": "No headset is connected.",
+  "signal.awaited": "No headset is connected",
+  "signal.awaited.do": "This step needs it. Pair it under Devices, or wake it.",
   "signal.over": "The session has ended",
   "signal.over.body": "Its alarms are kept.",
   "alarm.open": "Alarms",
@@ -62,6 +64,9 @@ export const alarmsDe: Readonly<Record<keyof typeof alarmsEn, string>> = {
   "signal.fine.recording": "Bewegung kommt an und wird gespeichert.",
   "signal.fine.waiting": "Noch ist nichts aufzuzeichnen.",
   "signal.fine.noHeadset": "Kein Headset ist verbunden.",
+  "signal.awaited": "Kein Headset ist verbunden",
+  "signal.awaited.do":
+    "Dieser Schritt braucht es. Koppeln Sie es unter Geräte oder wecken Sie es auf.",
   "signal.over": "Die Sitzung ist beendet",
   "signal.over.body": "Ihre Alarme bleiben erhalten.",
   "alarm.open": "Alarme",

@@ -120,6 +120,7 @@ function Confirmation({ session }: { readonly session: SessionView }): JSX.Eleme
       <span>
         {text}
         {problem !== null && `: ${problem}`}
+        {applied === false && session.blinded && `. ${t("avatarChanges.reasonHidden")}`}
       </span>
     </p>
   );

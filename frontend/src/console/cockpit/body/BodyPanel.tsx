@@ -36,6 +36,7 @@ export function BodyPanel({ session, live }: BodyPanelProps): JSX.Element {
   const { t, language } = useTexts();
   const { goals, calibration } = session;
   const may = session.allowed.includes("calibrate");
+  const isWorn = calibration?.notices.includes("nothing_worn") !== true;
   return (
     <section aria-label={t("body.title")}>
       <h2 className={cockpit.sectionTitle}>{t("body.title")}</h2>
@@ -54,7 +55,9 @@ export function BodyPanel({ session, live }: BodyPanelProps): JSX.Element {
             return (
               <tr key={goal}>
                 <th scope="row">{t(`body.goal.${goal}`)}</th>
-                <td data-state={state}>{state === undefined ? "–" : t(`body.state.${state}`)}</td>
+                <td data-state={state}>
+                  {state === undefined ? "–" : t(stateWord(state, isWorn))}
+                </td>
                 <td data-off={offCm !== undefined && offCm > TOO_FAR_CM}>
                   {offCm === undefined ? "–" : `${number(offCm, language, 1)} cm`}
                 </td>
@@ -65,12 +68,27 @@ export function BodyPanel({ session, live }: BodyPanelProps): JSX.Element {
       </table>
       {calibration?.stature_m != null && (
         <p className={classes.measured}>
-          {t("body.stature", { height: number(calibration.stature_m * 100, language, 1) })}
+          {t(isWorn ? "body.stature" : "body.assumed", {
+            height: number(calibration.stature_m * 100, language, 1),
+          })}
         </p>
       )}
+      {isWorn && calibration?.span_m != null && (
+        <p className={classes.measured}>
+          {t("body.span", { span: number(calibration.span_m * 100, language, 1) })}
+        </p>
+      )}
+      {calibration?.underway != null && <Underway step={calibration.underway} />}
       {calibration != null && calibration.notices.length > 0 && (
-        <Notice tone="warn" title={t("body.notices")}>
-          {calibration.notices.join(", ").replaceAll("_", " ")}
+        <Notice
+          tone={calibration.notices.every(isPlain) ? "info" : "warn"}
+          title={t(isWorn ? "body.notices" : "body.uncalibrated")}
+        >
+          <ul className={classes.notices}>
+            {calibration.notices.map((notice) => (
+              <li key={notice}>{said(t, "body.notice", notice)}</li>
+            ))}
+          </ul>
         </Notice>
       )}
       {calibration?.wanted === true && <p className={classes.measured}>{t("body.wanted")}</p>}
@@ -89,6 +107,41 @@ export function BodyPanel({ session, live }: BodyPanelProps): JSX.Element {
         </>
       )}
     </section>
+  );
+}
+
+type State = NonNullable<SessionView["goals"]>["states"][Goal];
+
+/** Mouse, keyboard, scripts and recordings give a part its place; nothing is measured by them. */
+const stateWord = (state: NonNullable<State>, isWorn: boolean) =>
+  isWorn || state !== "tracked" ? (`body.state.${state}` as const) : "body.state.given";
+
+/** What was noticed and is as it should be: it only says what is not there. */
+const PLAIN: ReadonlySet<string> = new Set(["waist_inferred", "feet_not_tracked", "nothing_worn"]);
+const isPlain = (notice: string): boolean => PLAIN.has(notice);
+
+type T = ReturnType<typeof useTexts>["t"];
+
+/** A word of the headset in the language of the console; as it is, if there is no text for it. */
+function said(t: T, about: "body.notice" | "body.problem" | "body.step", word: string): string {
+  const key = `${about}.${word}`;
+  const text = t(key as Parameters<T>[0]);
+  return text === key ? word.replaceAll("_", " ") : text;
+}
+
+interface UnderwayProps {
+  readonly step: NonNullable<NonNullable<SessionView["calibration"]>["underway"]>;
+}
+
+/** The step that the participant is asked for now, and what keeps it from being done. */
+function Underway({ step }: UnderwayProps): JSX.Element {
+  const { t } = useTexts();
+  const { number: at, total, problem } = step;
+  return (
+    <output className={classes.measured}>
+      {t("body.underway", { number: at, total, step: said(t, "body.step", step.step) })}
+      {problem != null && <strong> {said(t, "body.problem", problem)}</strong>}
+    </output>
   );
 }
 

@@ -13,7 +13,58 @@ export const bodyPanelEn = {
   "body.state.tracked": "measured",
   "body.state.inferred": "computed",
   "body.state.lost": "lost",
+  "body.state.given": "given",
+  "body.assumed": "The body is {{height}} cm tall, which nobody measured.",
+  "body.uncalibrated": "Not calibrated",
   "body.stature": "Calibrated to a height of {{height}} cm",
+  "body.underway": "Measuring, step {{number}} of {{total}}: {{step}}",
+  "body.step.square": "standing on the square",
+  "body.step.n_pose": "standing upright, arms down",
+  "body.step.t_pose": "arms out to the sides",
+  "body.step.squat": "bending the knees",
+  "body.step.reach": "reaching forward",
+  "body.step.mirror": "looking into the mirror",
+  "body.problem.off_square": "not on the square",
+  "body.problem.turned": "not facing the mirror",
+  "body.problem.looking": "not looking straight ahead",
+  "body.problem.bent_knees": "knees bent",
+  "body.problem.bent_elbows": "elbows bent",
+  "body.problem.arms_not_down": "arms not hanging",
+  "body.problem.arms_not_level": "arms not level",
+  "body.problem.arm_too_high": "an arm too high",
+  "body.problem.palms_not_down": "palms not facing down",
+  "body.problem.feet_apart": "feet apart",
+  "body.problem.swapped_hands": "controllers in the other hands",
+  "body.problem.moving": "moving",
+  "body.problem.not_bent": "knees not bent yet",
+  "body.problem.not_upright": "not upright again yet",
+  "body.problem.not_reached": "not reaching yet",
+  "body.problem.lost": "a part is not seen",
+  "body.problem.implausible": "the height is nobody's: check the headset's floor",
+  "body.notice.swapped_hands":
+    "The controllers were in the other hands; each counts for the hand it is in.",
+  "body.notice.swapped_shins":
+    "The trackers of the shins were exchanged; each counts for the leg it is on.",
+  "body.notice.bent_knees": "The knees were bent: the measured height is too small.",
+  "body.notice.bent_elbows": "The arms were not stretched: the measured span is too small.",
+  "body.notice.palms_not_down":
+    "The palms did not face down: how the hands are turned is assumed, not measured.",
+  "body.notice.below_stated_stature":
+    "The eyes are lower than the stated height says: posture, or the headset's floor.",
+  "body.notice.above_stated_stature":
+    "The eyes are higher than the stated height says: shoes, or the headset's floor.",
+  "body.notice.arms_limited":
+    "The arms are shorter or longer than the avatar can have for this height.",
+  "body.notice.goal_error": "A part was more than 3 cm off, also when measured again.",
+  "body.notice.waist_inferred": "No waist tracker: the hips are computed from head and shins.",
+  "body.notice.feet_not_tracked": "The shins are not tracked: no foot task.",
+  "body.notice.arms_not_measured": "The hands were not seen: arms of the usual length are used.",
+  "body.notice.not_tested": "Squatting or reaching was left out: the calibration is not tested.",
+  "body.notice.usual_offsets":
+    "Nothing was measured: the devices are assumed to sit where they usually do.",
+  "body.notice.nothing_worn":
+    "Nobody wears anything: a screen, a script or a recording moves the body.",
+  "body.span": "Arm span {{span}} cm",
   "body.notices": "The calibration noticed",
   "body.wanted":
     "The headset is asked to calibrate again. A running task is paused; resume it afterwards.",
@@ -41,7 +92,62 @@ export const bodyPanelDe: Readonly<Record<keyof typeof bodyPanelEn, string>> = {
   "body.state.tracked": "gemessen",
   "body.state.inferred": "berechnet",
   "body.state.lost": "verloren",
+  "body.state.given": "vorgegeben",
+  "body.assumed": "Der Körper ist {{height}} cm groß; gemessen hat das niemand.",
+  "body.uncalibrated": "Nicht kalibriert",
   "body.stature": "Kalibriert auf eine Größe von {{height}} cm",
+  "body.underway": "Messung, Schritt {{number}} von {{total}}: {{step}}",
+  "body.step.square": "auf dem Quadrat stehen",
+  "body.step.n_pose": "aufrecht stehen, Arme unten",
+  "body.step.t_pose": "Arme zu den Seiten",
+  "body.step.squat": "in die Knie gehen",
+  "body.step.reach": "nach vorn greifen",
+  "body.step.mirror": "in den Spiegel sehen",
+  "body.problem.off_square": "nicht auf dem Quadrat",
+  "body.problem.turned": "nicht zum Spiegel gewandt",
+  "body.problem.looking": "sieht nicht geradeaus",
+  "body.problem.bent_knees": "Knie gebeugt",
+  "body.problem.bent_elbows": "Ellbogen gebeugt",
+  "body.problem.arms_not_down": "Arme hängen nicht",
+  "body.problem.arms_not_level": "Arme nicht waagerecht",
+  "body.problem.arm_too_high": "ein Arm zu hoch",
+  "body.problem.palms_not_down": "Handflächen nicht nach unten",
+  "body.problem.feet_apart": "Füße auseinander",
+  "body.problem.swapped_hands": "Controller in der anderen Hand",
+  "body.problem.moving": "bewegt sich",
+  "body.problem.not_bent": "Knie noch nicht gebeugt",
+  "body.problem.not_upright": "noch nicht wieder aufrecht",
+  "body.problem.not_reached": "greift noch nicht",
+  "body.problem.lost": "ein Körperteil wird nicht gesehen",
+  "body.problem.implausible": "die Größe hat niemand: Boden des Headsets prüfen",
+  "body.notice.swapped_hands":
+    "Die Controller waren in der jeweils anderen Hand; jeder gilt für die Hand, die ihn hält.",
+  "body.notice.swapped_shins":
+    "Die Tracker der Unterschenkel waren vertauscht; jeder gilt für das Bein, an dem er sitzt.",
+  "body.notice.bent_knees": "Die Knie waren gebeugt: Die gemessene Größe ist zu klein.",
+  "body.notice.bent_elbows":
+    "Die Arme waren nicht gestreckt: Die gemessene Spannweite ist zu klein.",
+  "body.notice.palms_not_down":
+    "Die Handflächen zeigten nicht nach unten: Die Drehung der Hände ist angenommen, nicht gemessen.",
+  "body.notice.below_stated_stature":
+    "Die Augen sind tiefer, als die angegebene Größe erwarten lässt: Haltung oder Boden des Headsets.",
+  "body.notice.above_stated_stature":
+    "Die Augen sind höher, als die angegebene Größe erwarten lässt: Schuhe oder Boden des Headsets.",
+  "body.notice.arms_limited":
+    "Die Arme sind kürzer oder länger, als der Avatar sie bei dieser Größe haben kann.",
+  "body.notice.goal_error": "Ein Körperteil wich um mehr als 3 cm ab, auch nach erneutem Messen.",
+  "body.notice.waist_inferred":
+    "Kein Tracker an der Taille: Die Hüfte wird aus Kopf und Unterschenkeln berechnet.",
+  "body.notice.feet_not_tracked": "Die Unterschenkel werden nicht erfasst: keine Fußaufgabe.",
+  "body.notice.arms_not_measured":
+    "Die Hände wurden nicht gesehen: Es gelten Arme von üblicher Länge.",
+  "body.notice.not_tested":
+    "Kniebeuge oder Greifen wurde ausgelassen: Die Kalibrierung ist nicht geprüft.",
+  "body.notice.usual_offsets":
+    "Es wurde nichts gemessen: Die Geräte sitzen vermutlich dort, wo sie üblicherweise sitzen.",
+  "body.notice.nothing_worn":
+    "Niemand trägt Geräte: Bildschirm, Skript oder Aufnahme bewegt den Körper.",
+  "body.span": "Armspannweite {{span}} cm",
   "body.notices": "Bei der Kalibrierung fiel auf",
   "body.wanted":
     "Das Headset soll neu kalibrieren. Eine laufende Aufgabe pausiert; setzen Sie sie danach fort.",

@@ -3,11 +3,13 @@
 import { ActionIcon, Button } from "@mantine/core";
 import { sessions } from "@shared/api/endpoints";
 import type { Device, PairedDevice, SessionView } from "@shared/api/types";
-import { ago } from "@shared/format";
+import { ago, duration } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
+import { seconds } from "@shared/units";
 import { useMutation } from "@tanstack/react-query";
 import { type JSX, useEffect, useState } from "react";
 import { useTexts } from "../../i18n";
+import { opened, useOpenOnScreen } from "../../tour/onScreen";
 import { Key } from "../../ui/Key";
 import cockpit from "../Cockpit.module.css";
 import { ConnectionMark } from "../ConnectionMark";
@@ -43,6 +45,11 @@ export function DevicesPanel({ session }: { readonly session: SessionView }): JS
             key={device.id}
             sessionId={session.id}
             device={device}
+            canAct={
+              kind === "headset" &&
+              device.self_test === null &&
+              (!device.connected || session.status === "planned")
+            }
             onPair={() => setPairing(kind)}
           />
         ));
@@ -86,25 +93,14 @@ function Unpaired({ sessionId, kind, onPair }: UnpairedProps) {
 /** Pairs this browser as the headset, and opens the study on this screen in a tab of its own. */
 function OpenDesktop({ sessionId }: { readonly sessionId: string }) {
   const { t } = useTexts();
-  const pair = useMutation({
-    // Opened in the click itself, since browsers block tabs that open later.
-    mutationFn: async (tab: Window | null) => {
-      try {
-        const { code } = await sessions.pair(sessionId, "headset");
-        if (tab !== null) tab.location.href = `/vr?screen=desktop&code=${code}`;
-      } catch (error) {
-        tab?.close();
-        throw error;
-      }
-    },
-  });
+  const pair = useOpenOnScreen();
   return (
     <Button
       size="compact-xs"
       variant="subtle"
       loading={pair.isPending}
       title={t("device.desktop.title")}
-      onClick={() => pair.mutate(window.open("about:blank", "_blank"))}
+      onClick={() => pair.mutate({ sessionId, tab: opened() })}
     >
       {t("device.desktop")}
     </Button>
@@ -128,10 +124,12 @@ function usePairKeys(pair: (kind: Device) => void): void {
 interface PairedProps {
   readonly sessionId: string;
   readonly device: PairedDevice;
+  /** Whether this screen may take its place: not that of a headset that somebody may wear. */
+  readonly canAct: boolean;
   readonly onPair: () => void;
 }
 
-function Paired({ sessionId, device, onPair }: PairedProps): JSX.Element {
+function Paired({ sessionId, device, canAct, onPair }: PairedProps): JSX.Element {
   const { t, language } = useTexts();
   const now = useSlowClock();
   const revoke = useMutation({ mutationFn: () => sessions.revoke(sessionId, device.id) });
@@ -141,11 +139,19 @@ function Paired({ sessionId, device, onPair }: PairedProps): JSX.Element {
       <Icon name={device.kind} size={22} />
       <div>
         <div className={classes.deviceName}>{device.name || t(`device.${device.kind}`)}</div>
-        <div className={`${classes.deviceState} ${device.connected ? "" : classes.lost}`}>
-          <ConnectionMark connected={device.connected} />
-          {device.connected ? t("device.connected") : t("device.lost")}
-          {!device.connected && lastSeen !== null && ` · ${lastSeen}`}
-        </div>
+        {device.self_test !== null ? (
+          <div className={classes.deviceState}>
+            <Icon name="clock" size={16} />
+            <SelfTest key={device.self_test.left_s} leftS={device.self_test.left_s} />
+          </div>
+        ) : (
+          <div className={`${classes.deviceState} ${device.connected ? "" : classes.lost}`}>
+            <ConnectionMark connected={device.connected} />
+            {device.connected ? t("device.connected") : t("device.lost")}
+            {!device.connected && lastSeen !== null && ` · ${lastSeen}`}
+          </div>
+        )}
+        {canAct && <OpenDesktop sessionId={sessionId} />}
       </div>
       {device.connected ? (
         <ActionIcon
@@ -170,6 +176,21 @@ function Paired({ sessionId, device, onPair }: PairedProps): JSX.Element {
       )}
     </div>
   );
+}
+
+/** What is left of the test that a headset makes of itself, counted down from when it was told. */
+function SelfTest({ leftS }: { readonly leftS: number | null }): JSX.Element {
+  const { t } = useTexts();
+  const [toldAt] = useState(() => performance.now());
+  const [now, setNow] = useState(toldAt);
+  useEffect(() => {
+    const timer = setInterval(() => setNow(performance.now()), 1000);
+    return () => clearInterval(timer);
+  }, []);
+  if (leftS === null) return <>{t("device.selfTest.opens")}</>;
+  const left = Math.ceil(leftS - (now - toldAt) / 1000);
+  if (left <= 0) return <>{t("device.selfTest.ends")}</>;
+  return <>{t("device.selfTest", { left: duration(seconds(left)) })}</>;
 }
 
 /** The time of day, updated every five seconds: enough for "last seen". */

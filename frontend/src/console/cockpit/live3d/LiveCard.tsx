@@ -90,7 +90,7 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
         <BodyNotice body={live.body} instead />
         {!isBlinded && (
           <div className={classes.overlay}>
-            <LastTouch touch={live.last} />
+            <LastTouch touch={inNewestPhase(session, live.last)} />
             <MarksLegend marks={marks} />
             <Legend />
           </div>
@@ -189,6 +189,10 @@ function useViewKeys(isOn: boolean, setView: (view: View) => void): void {
     return () => document.removeEventListener("keydown", onKey);
   }, [isOn]);
 }
+
+/** A touch, unless another phase has been prepared since. */
+const inNewestPhase = ({ phases }: SessionView, touch: PoseTouch | null): PoseTouch | null =>
+  touch?.phase_id === phases.at(-1)?.phase_id ? touch : null;
 
 /** The colours of the boxes in words: the last contact and how it was judged. */
 function LastTouch({ touch }: { readonly touch: PoseTouch | null }): JSX.Element {

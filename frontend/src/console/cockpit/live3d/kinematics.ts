@@ -35,10 +35,10 @@ export function place(setup: PoseSetup, values: Float32Array, into: Placed): voi
 }
 
 /** Rotate a vector from a joint's own frame into the world. */
-export const rotateToWorld = (rotations: Float32Array, joint: number, vector: Vector): Vector =>
+const rotateToWorld = (rotations: Float32Array, joint: number, vector: Vector): Vector =>
   rotate(rotationOf(rotations, joint), vector);
 
-function rotationOf(rotations: Float32Array, joint: number): Quaternion {
+export function rotationOf(rotations: Float32Array, joint: number): Quaternion {
   const [w = 1, x = 0, y = 0, z = 0] = rotations.subarray(4 * joint, 4 * joint + 4);
   return [w, x, y, z];
 }

@@ -25,7 +25,7 @@ export const liveEn = {
   "live3d.figures": "Solid: the avatar. Grey: the participant.",
   "live3d.blinded":
     "Blinded: only the participant is shown. The avatar, its contacts and its errors would reveal the latency.",
-  "live3d.stature": "Drawn at a height of 1.72 m until the participant's height is known.",
+  "live3d.stature": "Drawn 1.72 m tall, because the participant's height is not entered.",
   "live3d.heat": "Joint error",
   "live3d.heat.most": "{{degrees}}° and more",
   "live3d.last": "Last contact:",
@@ -71,7 +71,7 @@ export const liveDe: Readonly<Record<keyof typeof liveEn, string>> = {
   "live3d.figures": "Kräftig: der Avatar. Grau: die Person.",
   "live3d.blinded":
     "Verblindet: Nur die Person wird gezeigt. Der Avatar, seine Kontakte und Fehler würden die Latenz verraten.",
-  "live3d.stature": "Mit 1,72 m Größe gezeichnet, bis die Körpergröße bekannt ist.",
+  "live3d.stature": "1,72 m groß gezeichnet, weil die Körpergröße nicht eingetragen ist.",
   "live3d.heat": "Gelenkfehler",
   "live3d.heat.most": "{{degrees}}° und mehr",
   "live3d.last": "Letzter Kontakt:",

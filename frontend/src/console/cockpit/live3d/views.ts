@@ -1,7 +1,8 @@
 /** The cameras of the live scene. */
 import type { PoseSetup } from "@shared/api/poses";
+import { type Sight, sightOf } from "@shared/stage/eyes";
 import type { PerspectiveCamera } from "three";
-import { type Placed, rotateToWorld } from "./kinematics";
+import { type Placed, rotationOf } from "./kinematics";
 
 /** Through the participant's eyes, from their right, or from behind them. */
 export type View = "first" | "side" | "third";
@@ -15,8 +16,6 @@ interface Subjects {
   readonly followed: Placed | null;
 }
 
-type Vector = readonly [x: number, y: number, z: number];
-
 /** Vertical fields of view, degrees. */
 const FIELD_DEG = { first: 78, side: 38, third: 42 } as const;
 
@@ -24,41 +23,26 @@ const FIELD_DEG = { first: 78, side: 38, third: 42 } as const;
 export function aim(camera: PerspectiveCamera, view: View, subjects: Subjects): void {
   const first = view === "first" ? fromEyes(subjects) : null;
   camera.fov = FIELD_DEG[first === null && view === "first" ? "third" : view];
-  const [from, to] = first ?? outsideView(view, subjects.followed);
-  camera.position.set(...from);
-  camera.lookAt(...to);
+  const { fromM, toM } = first ?? outsideView(view, subjects.followed);
+  camera.position.set(...fromM);
+  camera.lookAt(...toM);
   camera.updateProjectionMatrix();
 }
 
-function fromEyes({ setup, eyes }: Subjects): readonly [Vector, Vector] | null {
+function fromEyes({ setup, eyes }: Subjects): Sight | null {
   const head = setup?.joints.indexOf("Head") ?? -1;
   if (eyes === null || head < 0) return null;
   const [x = 0, y = 0, z = 0] = eyes.positions.subarray(3 * head, 3 * head + 3);
-  const [fx, fy, fz] = rotateToWorld(eyes.rotations, head, [0, 0, -1]);
-  const [ux, uy, uz] = rotateToWorld(eyes.rotations, head, [0, 1, 0]);
-  if (!Number.isFinite(x + fx + ux)) return null;
-  // Between the top of the neck and the eyes; tilted down a little, like a headset's picture.
-  const from = [x + 0.09 * ux + 0.1 * fx, y + 0.09 * uy + 0.1 * fy, z + 0.09 * uz + 0.1 * fz];
-  const [ex = 0, ey = 0, ez = 0] = from;
-  return [
-    [ex, ey, ez],
-    [ex + fx - 0.55 * ux, ey + fy - 0.55 * uy, ez + fz - 0.55 * uz],
-  ];
+  return sightOf([x, y, z], rotationOf(eyes.rotations, head));
 }
 
-function outsideView(view: View, followed: Placed | null): readonly [Vector, Vector] {
+function outsideView(view: View, followed: Placed | null): Sight {
   const [hipX = 0, , hipZ = 0] = followed?.positions ?? [];
   const x = Number.isFinite(hipX) ? hipX : 0;
   const z = Number.isFinite(hipZ) ? hipZ : 0;
   // The boxes in front of the participant are part of the picture.
   if (view === "side") {
-    return [
-      [x + 3.2, 1.2, z - 0.35],
-      [x, 0.92, z - 0.35],
-    ];
+    return { fromM: [x + 3.2, 1.2, z - 0.35], toM: [x, 0.92, z - 0.35] };
   }
-  return [
-    [x + 1.35, 1.95, z + 2.25],
-    [x, 0.92, z - 0.45],
-  ];
+  return { fromM: [x + 1.35, 1.95, z + 2.25], toM: [x, 0.92, z - 0.45] };
 }

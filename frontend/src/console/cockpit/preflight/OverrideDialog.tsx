@@ -75,6 +75,9 @@ function OverrideForm({ session, checks, onClose, then }: OverrideFormProps): JS
       <Stack>
         {!clear && <CheckList checks={checks} />}
         <Text c="dimmed">{t(clear ? "preflight.start.clear.body" : "preflight.start.body")}</Text>
+        {then !== undefined && !clear && session.kind === "people" && (
+          <Text>{t("preflight.start.test")}</Text>
+        )}
         <ReasonField usual={COMMON} value={reason} onChange={setReason} />
         {save.isError && <Failure error={save.error} />}
         <Group justify="flex-end">

@@ -25,6 +25,8 @@ export const preflightEn = {
   "preflight.start.title": "Start despite failed checks",
   "preflight.start.body":
     "Your reason and the results of the checks become part of the session's record.",
+  "preflight.start.test":
+    "If you only want to try the study, go back to it and add a session of the kind Test: it needs no tablet or headset, and its data are kept apart from those of people.",
   "preflight.start.do": "Start anyway",
   "preflight.start.clear": "All checks pass now",
   "preflight.start.clear.body": "You can start the session without giving a reason.",
@@ -59,6 +61,8 @@ export const preflightDe: Readonly<Record<keyof typeof preflightEn, string>> = {
   "preflight.start.title": "Trotz nicht bestandener Prüfungen starten",
   "preflight.start.body":
     "Ihre Begründung und die Ergebnisse der Prüfungen werden Teil des Protokolls der Sitzung.",
+  "preflight.start.test":
+    "Wenn Sie die Studie nur ausprobieren möchten, gehen Sie zu ihr zurück und legen Sie eine Sitzung der Art Test an: Sie braucht weder Tablet noch Headset, und ihre Daten bleiben von denen der Personen getrennt.",
   "preflight.start.do": "Trotzdem starten",
   "preflight.start.clear": "Jetzt sind alle Prüfungen bestanden",
   "preflight.start.clear.body": "Die Sitzung kann ohne Begründung starten.",

@@ -88,16 +88,27 @@ const MACHINE = /(_id|_hash|^by|hash)$/;
 const detailsOf = (event: SessionEvent): string =>
   Object.entries(event.data)
     .filter(([name, value]) => value !== null && typeof value !== "object" && !MACHINE.test(name))
-    .map(([name, value]) => `${name.replaceAll("_", " ")} ${readable(name, value)}`)
+    .map(([name, value]) => `${wordOf(name)} ${readable(name, value)}`)
     .join(" · ");
 
-/**
- * A value as it is shown: steps counted from 1, as on every page, and durations with at most three
- * decimals.
- */
+/** A unit at the end of a name. */
+const UNIT = /_(s|ms|m|cm|deg|hz)$/;
+const UNITS: Readonly<Record<string, string>> = { deg: "°", hz: "Hz" };
+
+/** A name without its unit, in words: `active_s` is the active time. */
+const wordOf = (name: string): string => {
+  const bare = name.replace(UNIT, "");
+  if (bare === "active") return "active time";
+  return bare === "client_t" ? "headset's clock" : bare.replaceAll("_", " ");
+};
+
+/** A value as it is shown: steps counted from 1, at most three decimals, and the unit. */
 function readable(name: string, value: unknown): string {
   if (typeof value !== "number") return String(value);
-  return name === "step" ? String(value + 1) : String(Math.round(value * 1000) / 1000);
+  if (name === "step") return String(value + 1);
+  const unit = UNIT.exec(name)?.[1];
+  const rounded = String(Math.round(value * 1000) / 1000);
+  return unit === undefined ? rounded : `${rounded} ${UNITS[unit] ?? unit}`;
 }
 
 /** The name of an actor: `account:admin` is admin; a device is called by its kind. */

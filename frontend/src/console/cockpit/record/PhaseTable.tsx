@@ -8,6 +8,7 @@ import type { JSX } from "react";
 import { SessionDownload } from "../../downloads/DownloadsButton";
 import { useTexts } from "../../i18n";
 import { stepName } from "../../steps";
+import { ScrollBox } from "../../ui/tables";
 import cockpit from "../Cockpit.module.css";
 import classes from "../Panels.module.css";
 import { AchievedLatency } from "./AchievedLatency";
@@ -46,25 +47,27 @@ export function PhaseTable({ session }: { readonly session: SessionView }): JSX.
           {t("replay.open")}
         </Button>
       </div>
-      <table className={`${classes.table} numbers`}>
-        <thead>
-          <tr>
-            {COLUMNS.map((column) => (
-              <th key={column} scope="col">
-                {t(`recorded.${column}`)}
+      <ScrollBox label={t("recorded.title")}>
+        <table className={`${classes.table} numbers`}>
+          <thead>
+            <tr>
+              {COLUMNS.map((column) => (
+                <th key={column} scope="col">
+                  {t(`recorded.${column}`)}
+                </th>
+              ))}
+              <th scope="col">
+                <span className="visually-hidden">{t("replay.open")}</span>
               </th>
+            </tr>
+          </thead>
+          <tbody>
+            {tasks.map((phase) => (
+              <PhaseRow key={phase.phase_id} session={session.id} phase={phase} />
             ))}
-            <th scope="col">
-              <span className="visually-hidden">{t("replay.open")}</span>
-            </th>
-          </tr>
-        </thead>
-        <tbody>
-          {tasks.map((phase) => (
-            <PhaseRow key={phase.phase_id} session={session.id} phase={phase} />
-          ))}
-        </tbody>
-      </table>
+          </tbody>
+        </table>
+      </ScrollBox>
     </section>
   );
 }
@@ -92,9 +95,11 @@ function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
         <AchievedLatency phase={phase} />
       </td>
       <td>{number(phase.active_s, language, 1)} s</td>
-      <td>{phase.completions}</td>
-      <td>{phase.side_contacts}</td>
-      <td>{number(phase.side_contact_s, language, 1)} s</td>
+      <td>{phase.completions ?? "–"}</td>
+      <td>{phase.side_contacts ?? "–"}</td>
+      <td>
+        {phase.side_contact_s === null ? "–" : `${number(phase.side_contact_s, language, 1)} s`}
+      </td>
       <td>
         <ReplayLink session={session} phase={phase} />
       </td>

@@ -28,6 +28,7 @@ interface GroupProps {
 
 function Group({ group, session }: GroupProps): JSX.Element {
   const { t } = useTexts();
+  const worn = group.steps.find(({ body }) => body !== null)?.body ?? null;
   const title =
     group.block === null
       ? t(group.steps[0]?.index === 0 ? "timeline.before" : "timeline.after")
@@ -39,6 +40,7 @@ function Group({ group, session }: GroupProps): JSX.Element {
         {group.block !== null && (
           <span className="numbers">
             {group.latency === null ? t("timeline.hidden") : latency(milliseconds(group.latency))}
+            {worn !== null && ` · ${worn}`}
           </span>
         )}
       </h2>
@@ -92,8 +94,10 @@ function StepDetails({ step, phase }: StepRowProps): JSX.Element | null {
   const parts: string[] = [];
   if (step.status === "skipped") parts.push(step.reason ?? t("timeline.skipped"));
   else if (phase !== undefined && step.status === "done" && isCounted(step)) {
-    parts.push(t("timeline.completions", { count: phase.completions }));
-    parts.push(t("timeline.contacts", { count: phase.side_contacts }));
+    // A blinded reader gets the counts once the phase has ended.
+    const { completions, side_contacts: contacts } = phase;
+    if (completions !== null) parts.push(t("timeline.completions", { count: completions }));
+    if (contacts !== null) parts.push(t("timeline.contacts", { count: contacts }));
   } else if (step.duration_s !== null && step.status !== "done") {
     parts.push(duration(seconds(step.duration_s)));
   }

@@ -5,7 +5,7 @@
 import type { Command, CommandType, Device, SessionView, Step } from "@shared/api/types";
 import type { IconName } from "@shared/ui/Icon";
 import type { Key } from "../../i18n";
-import { isCompletedByButton, isTimed, stepText } from "../../steps";
+import { isCompletedByButton, isForm, isTimed, stepText } from "../../steps";
 
 interface PrimaryAction {
   readonly command: Command;
@@ -45,12 +45,22 @@ export function primaryAction(session: SessionView): PrimaryAction | null {
 
 const NEEDS_HEADSET: readonly CommandType[] = ["materialise", "begin_phase", "resume"];
 
+const needsHeadset = (type: string): boolean => NEEDS_HEADSET.some((one) => one === type);
+
 /**
  * Whether the server would refuse the next action because no headset is connected to carry it out.
  */
 export const lacksHeadset = (session: SessionView): boolean =>
-  session.allowed.some((type) => NEEDS_HEADSET.some((one) => one === type)) &&
-  !isConnected(session, "headset");
+  session.allowed.some(needsHeadset) && !isConnected(session, "headset");
+
+/** Whether the primary action has to wait until a headset is connected. */
+export const isBlocked = (session: SessionView, { command }: PrimaryAction): boolean =>
+  needsHeadset(command.type) && !isConnected(session, "headset");
+
+/** Whether the session cannot go on without a headset, be it an action or a form that waits. */
+export const awaitsHeadset = (session: SessionView): boolean =>
+  lacksHeadset(session) ||
+  (currentStep(session)?.forms === "headset" && !isConnected(session, "headset"));
 
 export const isConnected = ({ devices }: SessionView, device: Device): boolean =>
   devices.some(({ kind, connected }) => kind === device && connected);
@@ -58,10 +68,11 @@ export const isConnected = ({ devices }: SessionView, device: Device): boolean =
 /** The instruction for the operator: what to say or do now. */
 export function guidance(session: SessionView): Key {
   const step = currentStep(session);
+  if (session.status === "completed" && session.simulated) return "guide.completed.simulated";
   if (session.status !== "active" && session.status !== "planned") return `guide.${session.status}`;
   if (step === null || session.current === null) return "guide.planned";
   if (session.current.status !== "ready") return `guide.${session.current.status}`;
-  return stepText("guide", step);
+  return isForm(step) && step.forms === "headset" ? "step.askInHeadset" : stepText("guide", step);
 }
 
 export type Reasoned = Extract<

@@ -15,6 +15,7 @@ import {
   COMMON_REASONS,
   currentStep,
   guidance,
+  isBlocked,
   isConnected,
   lacksHeadset,
   primaryAction,
@@ -23,6 +24,7 @@ import {
 import type { useSession } from "../session/useSession";
 import classes from "./CurrentStep.module.css";
 import { HeightForm } from "./HeightForm";
+import { Aloud, isAloud } from "./OperatorEntry";
 import { PaperConsent } from "./PaperConsent";
 import { PhaseClock } from "./PhaseClock";
 
@@ -56,8 +58,14 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
           </h2>
         </>
       )}
-      <p className={classes.guide}>{t(guidance(session))}</p>
-      {lacksHeadset(session) && <p className={classes.guide}>{t("step.noHeadset")}</p>}
+      <p className={classes.guide}>
+        {t(isAloud(session, step) ? "step.askAloud" : guidance(session))}
+      </p>
+      {lacksHeadset(session) && (
+        <p id={REASON} className={classes.guide}>
+          {t("step.noHeadset")}
+        </p>
+      )}
       {session.shortfalls !== null && session.shortfalls.length > 0 && (
         <div className={classes.notValid}>
           <Notice tone="warn" title={t("validity.title")}>
@@ -68,6 +76,7 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
       )}
       {step !== null && isTimed(step) && <PhaseClock session={session} store={live.store} />}
       {session.current?.status === "paused" && <PauseReason live={live} />}
+      {isAloud(session, step) && <Aloud session={session} step={step} />}
       {step?.kind === "height" && session.allowed.includes("complete_step") ? (
         <HeightForm
           session={session}
@@ -85,6 +94,9 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
     </section>
   );
 }
+
+/** The id of the sentence that says why the large button is disabled. */
+const REASON = "step-no-headset";
 
 function StepPosition({ session, step }: { readonly session: SessionView; readonly step: Step }) {
   const texts = useTexts();
@@ -121,6 +133,7 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
   const action = primaryAction(session);
   const step = currentStep(session);
   if (action !== null) {
+    const reason = isBlocked(session, action) ? t("step.noHeadset") : undefined;
     return (
       <Button
         size="lg"
@@ -128,6 +141,9 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
         leftSection={<Icon name={action.icon} />}
         rightSection={<Key name={t("keys.enter")} />}
         loading={live.sending}
+        disabled={reason !== undefined}
+        title={reason}
+        aria-describedby={reason && REASON}
         onClick={() => live.send(action.command)}
       >
         {t(action.label)}
@@ -153,15 +169,16 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
     return <PaperConsent session={session} step={step} live={live} />;
   }
   if (session.allowed.includes("resume") || step === null || !isForm(step)) return null;
+  if (isAloud(session, step)) return null;
   return (
     <>
       <span className={classes.waiting}>
-        {step.forms !== "oral" && <Loader size="sm" type="dots" />}
+        <Loader size="sm" type="dots" />
         {t(whereAnswered(session, step))}
       </span>
       {session.allowed.includes("enter_answers") && (
         <Button
-          variant={step.forms === "oral" ? "filled" : "default"}
+          variant="default"
           leftSection={<Icon name="form" size={18} />}
           onClick={onEnterAnswers}
         >
@@ -174,11 +191,12 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
 
 /** Where the participant answers a form, and whether that can happen now. */
 function whereAnswered(session: SessionView, { forms }: Step): TextKey {
-  if (forms === "oral") return "step.askAloud";
   if (forms === "headset") {
     return isConnected(session, "headset") ? "step.waitingForm.headset" : "step.noHeadset";
   }
-  return isConnected(session, "tablet") ? "step.waitingTablet" : "step.noTablet";
+  if (!isConnected(session, "tablet")) return "step.noTablet";
+  const isWorn = isConnected(session, "headset") && session.phases.length > 0;
+  return isWorn ? "step.waitingTablet.worn" : "step.waitingTablet";
 }
 
 const DANGERS = ["abort", "withdraw"] as const;

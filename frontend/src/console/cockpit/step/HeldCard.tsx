@@ -6,7 +6,7 @@ import { Button } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
-import type { JSX } from "react";
+import type { JSX, ReactNode } from "react";
 import { useTexts } from "../../i18n";
 import { usePermissions } from "../../permissions";
 import type { Reasoned } from "../session/action";
@@ -20,35 +20,20 @@ interface HeldCardProps {
 /** A stop rule was met. */
 export function HeldCard({ held, onReasonNeeded }: HeldCardProps): JSX.Element {
   const { t } = useTexts();
-  const can = usePermissions();
   const values = { score: held.score, instrument: held.instrument, limit: held.stop_at };
   return (
-    <section className={classes.card} role="alert">
-      <h2 className={classes.title}>
-        <Icon name="alert" size={36} />
-        {t("held.title")}
-      </h2>
-      <p className={classes.reason}>{t(held.is_rise ? "held.rise" : "held.score", values)}</p>
-      <p>{t("held.body")}</p>
-      {can("run") && (
-        <div className={classes.actions}>
-          <Button
-            size="lg"
-            color="red"
-            leftSection={<Icon name="stop" />}
-            onClick={() => onReasonNeeded("abort")}
-          >
-            {t("held.end")}
-          </Button>
-          <Button size="lg" variant="default" onClick={() => onReasonNeeded("override_stop")}>
-            {t("do.override_stop")}
-          </Button>
-          <Button variant="subtle" color="red" onClick={() => onReasonNeeded("withdraw")}>
-            {t("held.withdraw")}
-          </Button>
-        </div>
-      )}
-    </section>
+    <Hold
+      title={t("held.title")}
+      reason={t(held.is_rise ? "held.rise" : "held.score", values)}
+      body={t("held.body")}
+      end={{ title: t("held.end"), action: "abort" }}
+      goOn={{ title: t("do.override_stop"), action: "override_stop" }}
+      onReasonNeeded={onReasonNeeded}
+    >
+      <Button variant="subtle" color="red" onClick={() => onReasonNeeded("withdraw")}>
+        {t("held.withdraw")}
+      </Button>
+    </Hold>
   );
 }
 
@@ -60,32 +45,60 @@ interface RefusedCardProps {
 /** The participant does not want to take part: nothing continues before somebody has decided. */
 export function RefusedCard({ refusal, onReasonNeeded }: RefusedCardProps): JSX.Element {
   const { t, language } = useTexts();
+  const time = refusal.at === null ? null : timeOfDay(refusal.at, language);
+  return (
+    <Hold
+      title={t("refused.title")}
+      reason={time === null ? null : t("refused.at", { time, number: refusal.step + 1 })}
+      body={t("refused.body")}
+      end={{ title: t("refused.end"), action: "withdraw" }}
+      goOn={{ title: t("do.reopen_consent"), action: "reopen_consent" }}
+      onReasonNeeded={onReasonNeeded}
+    />
+  );
+}
+
+interface Way {
+  readonly title: string;
+  readonly action: Reasoned;
+}
+
+interface HoldProps {
+  readonly title: string;
+  readonly reason: string | null;
+  readonly body: string;
+  readonly end: Way;
+  readonly goOn: Way;
+  readonly onReasonNeeded: (type: Reasoned) => void;
+  /** Further ways, for those who may run sessions. */
+  readonly children?: ReactNode;
+}
+
+function Hold(props: HoldProps): JSX.Element {
+  const { title, reason, body, end, goOn, onReasonNeeded, children } = props;
   const can = usePermissions();
   return (
     <section className={classes.card} role="alert">
       <h2 className={classes.title}>
         <Icon name="alert" size={36} />
-        {t("refused.title")}
+        {title}
       </h2>
-      {refusal.at !== null && (
-        <p className={classes.reason}>
-          {t("refused.at", { time: timeOfDay(refusal.at, language), number: refusal.step + 1 })}
-        </p>
-      )}
-      <p>{t("refused.body")}</p>
+      {reason !== null && <p className={classes.reason}>{reason}</p>}
+      <p>{body}</p>
       {can("run") && (
         <div className={classes.actions}>
           <Button
             size="lg"
             color="red"
             leftSection={<Icon name="stop" />}
-            onClick={() => onReasonNeeded("withdraw")}
+            onClick={() => onReasonNeeded(end.action)}
           >
-            {t("refused.end")}
+            {end.title}
           </Button>
-          <Button size="lg" variant="default" onClick={() => onReasonNeeded("reopen_consent")}>
-            {t("do.reopen_consent")}
+          <Button size="lg" variant="default" onClick={() => onReasonNeeded(goOn.action)}>
+            {goOn.title}
           </Button>
+          {children}
         </div>
       )}
     </section>

@@ -1,4 +1,7 @@
-/** The questionnaire read aloud: the operator enters the answers, and the record says so. */
+/**
+ * The questionnaire read aloud: the operator enters the answers, and the record says so. Where the
+ * study has it read aloud, its questions stand in the step's card; elsewhere in a dialog.
+ */
 import { Center, Loader, Modal } from "@mantine/core";
 import { sessions } from "@shared/api/endpoints";
 import type { Administration, SessionView, Step } from "@shared/api/types";
@@ -11,6 +14,7 @@ import { type JSX, lazy, Suspense, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { Loaded } from "../../ui/Loaded";
+import classes from "./CurrentStep.module.css";
 
 const FormView = lazy(async () => ({ default: (await import("@shared/forms/FormView")).FormView }));
 
@@ -32,12 +36,31 @@ export function OperatorEntry({ session, step, opened, onClose }: OperatorEntryP
       closeButtonProps={{ "aria-label": t("action.close") }}
       closeOnClickOutside={false}
     >
-      {opened && (
-        <Entry session={session} stepKey={`${step?.key} ${step?.attempt}`} onClose={onClose} />
-      )}
+      {opened && <Entry session={session} stepKey={stepKeyOf(step)} onClose={onClose} />}
     </Modal>
   );
 }
+
+interface AloudProps {
+  readonly session: SessionView;
+  readonly step: Step;
+}
+
+/** The questions of a form that the study has read aloud, with the fields for their answers. */
+export function Aloud({ session, step }: AloudProps): JSX.Element {
+  const stepKey = stepKeyOf(step);
+  return (
+    <div className={classes.aloud}>
+      <Entry key={stepKey} session={session} stepKey={stepKey} onClose={() => undefined} />
+    </div>
+  );
+}
+
+/** Whether this step's questions are read aloud and answered here, now. */
+export const isAloud = (session: SessionView, step: Step | null): step is Step =>
+  step?.forms === "oral" && session.allowed.includes("enter_answers");
+
+const stepKeyOf = (step: Step | null): string => `${step?.key} ${step?.attempt}`;
 
 interface EntryProps {
   readonly session: SessionView;
@@ -102,7 +125,8 @@ function EntryForm({ session, administration, onClose }: EntryFormProps): JSX.El
           draft={draft}
           startedAt={startedAt}
           canOmit
-          busy={save.isPending}
+          // Stored, the step is over; the form stays until the session says so.
+          busy={save.isPending || save.isSuccess}
           onChange={setDraft}
           onSubmit={(answers, { timings, traces }) =>
             save.mutate({

@@ -29,9 +29,12 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
   const report = useReport(session, store);
   const now = useNow(report.running);
   const { current } = session;
+  // A calibration is shown as such; otherwise only a scene that nobody sees holds a headset up.
+  const isPending = current?.resuming === true && current.pause_reason !== "calibration";
+  const isUnseen = useLasting(isPending, PENDING_MS);
   if (current === null) return null;
   const active = activeAt(report, now);
-  const warning = warningOf(session, report, now);
+  const warning = warningOf(session, report, now, isUnseen);
   const cause = current.status === "paused" ? causeKey(current.pause_reason) : null;
   return (
     <>
@@ -125,9 +128,30 @@ function useReport(session: SessionView, store: TelemetryStore): ClockReport {
   };
 }
 
-function warningOf(session: SessionView, report: ClockReport, now: Milliseconds): Key | null {
+function warningOf(
+  session: SessionView,
+  report: ClockReport,
+  now: Milliseconds,
+  isUnseen: boolean,
+): Key | null {
   if (!hasHeadset(session)) return "clock.noHeadset";
+  if (isUnseen) return "clock.unseen";
   return isHolding(report, now) ? "clock.holding" : null;
+}
+
+/** A headset whose wearer sees the scene resumes within a few frames; after this it does not. */
+const PENDING_MS = 2000;
+
+/** Whether something has been so for some time. */
+function useLasting(isSo: boolean, forMs: number): boolean {
+  const [lasts, setLasts] = useState(false);
+  useEffect(() => {
+    setLasts(false);
+    if (!isSo) return;
+    const timer = setTimeout(() => setLasts(true), forMs);
+    return () => clearTimeout(timer);
+  }, [isSo, forMs]);
+  return isSo && lasts;
 }
 
 const TICK_MS = 200;

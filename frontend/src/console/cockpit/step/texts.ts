@@ -16,6 +16,7 @@ export const sessionEn = {
   "change.notes_other": "{{count}} notes were added.",
   "change.other": "The session was changed.",
   "guide.planned": "Pair the tablet and the headset, then start when the participant is ready.",
+  "guide.completed.simulated": "Everything is stored. Nobody took part.",
   "guide.completed": "Everything is stored. Thank the participant.",
   "guide.aborted": "The session was ended early. Its data are kept and its slot is free again.",
   "guide.withdrawn": "The participant withdrew. The slot is free again.",
@@ -45,7 +46,10 @@ export const sessionEn = {
   "step.latency": "{{latency}} added",
   "step.latencyHidden": "latency hidden",
   "step.waitingTablet": "Waiting for the tablet",
+  "step.waitingTablet.worn":
+    "Waiting for the tablet. The headset asks to be taken off: help with it.",
   "step.askAloud": "Read the questions aloud and enter the answers.",
+  "step.askInHeadset": "The participant answers in the headset.",
   "step.waitingForm.headset": "Waiting for the answers in the headset",
   "step.noTablet": "No tablet is connected. Pair it under Devices.",
   "step.noHeadset": "No headset is connected. Pair it under Devices, or wake it.",
@@ -54,6 +58,7 @@ export const sessionEn = {
   "clock.of": "of {{time}} active time",
   "clock.progress": "Share of the active time that has passed",
   "clock.noHeadset": "No headset is connected, so the clock is paused.",
+  "clock.unseen": "Waiting until the participant looks at the scene again.",
   "clock.holding":
     "The headset has not reported for a few seconds. The clock stopped at its last report.",
   "height.stated": "Stated height",
@@ -74,6 +79,8 @@ export const sessionEn = {
   "timeline.contacts_one": "{{count}} contact",
   "timeline.contacts_other": "{{count}} contacts",
   "head.slot": "slot {{number}}",
+  "head.avatar": "avatar {{title}}, version {{version}}",
+  "head.avatar.hash": "The avatar’s content: {{hash}}",
   "head.log": "Log",
   "feed.connecting": "Connecting",
   "feed.live": "Live",
@@ -102,6 +109,7 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "change.notes_other": "{{count}} Notizen kamen hinzu.",
   "change.other": "Die Sitzung wurde geändert.",
   "guide.planned": "Koppeln Sie Tablet und Headset und starten Sie, wenn die Person bereit ist.",
+  "guide.completed.simulated": "Alles ist gespeichert. Niemand hat teilgenommen.",
   "guide.completed": "Alles ist gespeichert. Danken Sie der Person.",
   "guide.aborted":
     "Die Sitzung wurde vorzeitig beendet. Ihre Daten bleiben erhalten, ihr Platz ist wieder frei.",
@@ -131,7 +139,10 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "step.latency": "{{latency}} zusätzlich",
   "step.latencyHidden": "Latenz verdeckt",
   "step.waitingTablet": "Wartet auf das Tablet",
+  "step.waitingTablet.worn":
+    "Wartet auf das Tablet. Das Headset bittet, es abzunehmen: Helfen Sie dabei.",
   "step.askAloud": "Lesen Sie die Fragen vor und geben Sie die Antworten ein.",
+  "step.askInHeadset": "Die Person antwortet im Headset.",
   "step.waitingForm.headset": "Warten auf die Antworten im Headset",
   "step.noTablet": "Kein Tablet ist verbunden. Koppeln Sie es unter Geräte.",
   "step.noHeadset":
@@ -141,6 +152,7 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "clock.of": "von {{time}} aktiver Zeit",
   "clock.progress": "Verstrichener Anteil der aktiven Zeit",
   "clock.noHeadset": "Kein Headset ist verbunden, darum ist die Uhr angehalten.",
+  "clock.unseen": "Wartet, bis die Person wieder in die Szene sieht.",
   "clock.holding":
     "Das Headset hat sich seit einigen Sekunden nicht gemeldet. Die Uhr steht bei seiner letzten Meldung.",
   "height.stated": "Angegebene Größe",
@@ -161,6 +173,8 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "timeline.contacts_one": "{{count}} Kontakt",
   "timeline.contacts_other": "{{count}} Kontakte",
   "head.slot": "Platz {{number}}",
+  "head.avatar": "Avatar {{title}}, Version {{version}}",
+  "head.avatar.hash": "Inhalt des Avatars: {{hash}}",
   "head.log": "Protokoll",
   "feed.connecting": "Verbindet",
   "feed.live": "Live",

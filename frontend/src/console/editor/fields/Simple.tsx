@@ -10,7 +10,9 @@ import {
 } from "@mantine/core";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
+import { Attention } from "../../bodies/Attention";
 import { bodiesQuery } from "../../bodies/queries";
+import { useTexts } from "../../i18n";
 import { useCommitted, useForm, useLabels, useProblem, useValue } from "../formContext";
 import { isList, isObject, type Json, type Path } from "../paths";
 import type { NumberSpec } from "../schema";
@@ -59,11 +61,14 @@ export function WordsField({
     );
   if (existingKeys !== null)
     return (
-      <Autocomplete
-        {...common}
-        data={[...existingKeys]}
-        onChange={(text) => field.onChange(text)}
-      />
+      <>
+        <Autocomplete
+          {...common}
+          data={[...existingKeys]}
+          onChange={(text) => field.onChange(text)}
+        />
+        {isBodyOfCondition(path) && <BodyAttention name={field.value} />}
+      </>
     );
   const onChange = (event: { currentTarget: { value: string } }) =>
     field.onChange(event.currentTarget.value);
@@ -75,10 +80,19 @@ export function WordsField({
   );
 }
 
+const isBodyOfCondition = (path: Path): boolean =>
+  path[0] === "conditions" && path.at(-1) === "body";
+
+/** What to consider about the chosen body, where it is chosen. */
+function BodyAttention({ name }: { readonly name: string }): JSX.Element | null {
+  const body = useQuery(bodiesQuery).data?.humanoids.find((one) => one.name === name);
+  return body === undefined ? null : <Attention body={body} />;
+}
+
 /** The keys that exist elsewhere in the file or in the library, for fields that refer to one. */
 function useExistingKeys(path: Path): readonly string[] | null {
   const { tree, instruments } = useForm();
-  const isBody = path[0] === "conditions" && path.at(-1) === "body";
+  const isBody = isBodyOfCondition(path);
   const bodies = useQuery({ ...bodiesQuery, enabled: isBody });
   if (isBody) return (bodies.data?.humanoids ?? []).flatMap(({ name }) => name ?? []).toSorted();
   switch (path.at(-1)) {
@@ -96,6 +110,26 @@ function useExistingKeys(path: Path): readonly string[] | null {
     default:
       return null;
   }
+}
+
+interface NewKey {
+  /** What a key is called where one is added. */
+  readonly label: string;
+  /** The keys that the library knows, to choose from. */
+  readonly known: readonly string[];
+}
+
+/** How a key is added to a map: an instrument of rehearsed answers, or one of its Likert items. */
+export function useNewKey(path: Path, label: string): NewKey {
+  const { t } = useTexts();
+  const { instruments } = useForm();
+  const isSimulation = path[0] === "simulation";
+  const instrument = isSimulation && path.length === 3 ? String(path[2]) : "";
+  if (isSimulation && path.length === 2) {
+    return { label: t("editor.newInstrument"), known: instruments };
+  }
+  if (instrument !== "") return { label: t("editor.newItem", { name: instrument }), known: [] };
+  return { label: t("editor.newKey", { label }), known: [] };
 }
 
 export function NumberField({

@@ -1,13 +1,14 @@
 /** The field for any value in the file, chosen by its schema. */
-import { ActionIcon, Button, Menu, TagsInput } from "@mantine/core";
+import { ActionIcon, Autocomplete, Button, Menu, TagsInput } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
-import type { JSX, KeyboardEvent } from "react";
+import { type FormEvent, type JSX, type KeyboardEvent, useState } from "react";
 import { useTexts } from "../../i18n";
 import classes from "../Editor.module.css";
 import { useForm, useLabels, useProblem, useValue } from "../formContext";
 import { isList, isObject, type Json, type Path } from "../paths";
 import { blank, type Field, type ListSpec, type ObjectSpec, type Spec } from "../schema";
-import { BooleanField, ChoiceField, NumberField, WordsField } from "./Simple";
+import { AvatarVersionField } from "./AvatarVersionField";
+import { BooleanField, ChoiceField, NumberField, useNewKey, WordsField } from "./Simple";
 import { TextsField } from "./Texts";
 
 interface SpecFieldProps {
@@ -40,13 +41,22 @@ function SpecField({ path, spec, label }: SpecFieldProps): JSX.Element | null {
       return (
         <fieldset className={classes.group}>
           <legend>{label}</legend>
-          <ObjectFields path={path} spec={spec} />
+          {path.join(".") === "avatar_configuration" ? (
+            <AvatarVersionField path={path} />
+          ) : (
+            <ObjectFields path={path} spec={spec} />
+          )}
         </fieldset>
       );
     case "union":
       return <UnionFields path={path} spec={spec} />;
+    case "map":
+      // Maps of texts have a page of their own.
+      return spec.value.kind === "texts" ? null : (
+        <MapField path={path} spec={spec.value} label={label} />
+      );
     default:
-      return null; // a fixed value leaves nothing to choose; maps of texts have a page of their own
+      return null; // a fixed value leaves nothing to choose
   }
 }
 
@@ -122,6 +132,7 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
 const isWide = (spec: Spec): boolean =>
   spec.kind === "texts" ||
   spec.kind === "object" ||
+  spec.kind === "map" ||
   (spec.kind === "words" && spec.pattern === null) ||
   (spec.kind === "list" && !isWords(spec.item));
 
@@ -136,6 +147,60 @@ function UnionFields({
   const tag = isObject(value) ? value[spec.tag] : undefined;
   const option = typeof tag === "string" ? spec.options[tag] : undefined;
   return option === undefined ? null : <ObjectFields path={path} spec={option} />;
+}
+
+interface MapFieldProps {
+  readonly path: Path;
+  /** What each value is. */
+  readonly spec: Spec;
+  readonly label: string;
+}
+
+/** Values by a key that the writer chooses: items by their instrument, an aspect by its item. */
+function MapField({ path, spec, label }: MapFieldProps): JSX.Element {
+  const { t } = useTexts();
+  const { change, languages } = useForm();
+  const value = useValue(path);
+  const problem = useProblem(path);
+  const added = useNewKey(path, label);
+  const [key, setKey] = useState("");
+  const keys = isObject(value) ? Object.keys(value) : [];
+  const add = (event: FormEvent) => {
+    event.preventDefault();
+    const name = key.trim();
+    if (name === "" || keys.includes(name)) return;
+    change([{ path: [...path, name], action: "set", value: blank(spec, languages) }]);
+    setKey("");
+  };
+  return (
+    <fieldset className={`${classes.group} ${classes.map}`}>
+      <legend>{label}</legend>
+      {problem !== null && <p className={classes.problem}>{problem}</p>}
+      {keys.map((name) => (
+        <div key={name}>
+          <SpecField path={[...path, name]} spec={spec} label={name} />
+          <button
+            type="button"
+            className={classes.drop}
+            onClick={() => change([{ path: [...path, name], action: "remove" }])}
+          >
+            {t("editor.leaveOut", { name })}
+          </button>
+        </div>
+      ))}
+      <form className={classes.inline} onSubmit={add}>
+        <Autocomplete
+          label={added.label}
+          data={added.known.filter((one) => !keys.includes(one))}
+          value={key}
+          onChange={setKey}
+        />
+        <Button type="submit" variant="default" leftSection={<Icon name="add" size={16} />}>
+          {t("editor.add")}
+        </Button>
+      </form>
+    </fieldset>
+  );
 }
 
 interface TupleFieldProps {

@@ -1,10 +1,11 @@
-/** The measured delay of each device: its newest measurement first, the history below. */
+/** The measured delay of each device, newest first, and the self-tests of the headsets. */
 import { Button, Modal, Title } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import type { Calibration } from "@shared/api/records";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
+import { Link } from "wouter";
 import { useTexts } from "../../i18n";
 import { usePermissions } from "../../permissions";
 import { calibrationsQuery } from "../../queries";
@@ -14,6 +15,7 @@ import { useTitle } from "../../ui/page";
 import { AddForm } from "./AddForm";
 import classes from "./EquipmentPage.module.css";
 import { History } from "./History";
+import { SelfTests } from "./SelfTests";
 
 export function EquipmentPage(): JSX.Element {
   const { t } = useTexts();
@@ -32,6 +34,9 @@ export function EquipmentPage(): JSX.Element {
         <div>
           <Title order={1}>{t("equipment.title")}</Title>
           <p className={classes.lead}>{t("equipment.lead")}</p>
+          <Link href="/trackers" className={classes.link ?? ""}>
+            {t("trackers.link")}
+          </Link>
         </div>
         {add}
       </div>
@@ -53,6 +58,7 @@ export function EquipmentPage(): JSX.Element {
           )
         }
       </Loaded>
+      <SelfTests />
       <Modal
         opened={adding}
         onClose={dialog.close}

@@ -4,7 +4,7 @@ export const equipmentEn = {
   "equipment.lead":
     "How long the equipment itself takes to show a movement. The latency that a study sets is added to this. Measurements are included in every export.",
   "equipment.add": "Add a measurement",
-  "equipment.empty": "Nothing has been measured yet",
+  "equipment.empty": "No delay has been measured yet",
   "equipment.empty.body":
     "Measure the delay of each combination of headset, tracking and computer once, and again after any change to it.",
   "equipment.current": "Newest",
@@ -36,7 +36,7 @@ export const equipmentDe: Readonly<Record<keyof typeof equipmentEn, string>> = {
   "equipment.lead":
     "Wie lange die Geräte selbst brauchen, um eine Bewegung zu zeigen. Die Latenz, die eine Studie vorgibt, kommt hinzu. Die Messungen sind in jedem Export enthalten.",
   "equipment.add": "Messung eintragen",
-  "equipment.empty": "Es wurde noch nichts gemessen",
+  "equipment.empty": "Es wurde noch keine Verzögerung gemessen",
   "equipment.empty.body":
     "Messen Sie die Verzögerung jeder Kombination aus Headset, Tracking und Rechner einmal und nach jeder Änderung daran erneut.",
   "equipment.current": "Neueste",

@@ -4,12 +4,16 @@ import { join } from "node:path";
 import type { AuditEntry } from "@shared/api/people";
 import { createTranslations } from "@shared/i18n/i18n";
 import { describe, expect, it } from "vitest";
+import { trackersDe, trackersEn } from "../trackers/texts";
 import { auditDe, auditEn } from "./auditTexts";
 import { actorName, KINDS, sentences } from "./auditWords";
 import { peopleDe, peopleEn } from "./texts";
 
 const tables = createTranslations(
-  { en: { ...auditEn, ...peopleEn }, de: { ...auditDe, ...peopleDe } },
+  {
+    en: { ...auditEn, ...peopleEn, ...trackersEn },
+    de: { ...auditDe, ...peopleDe, ...trackersDe },
+  },
   "en",
 );
 const t = (key: string, values?: Readonly<Record<string, string | number>>) =>
@@ -29,10 +33,15 @@ const FEATURES = join(import.meta.dirname, "../../../../../app/features");
 const files = readdirSync(FEATURES, { recursive: true, encoding: "utf8" }).filter((name) =>
   name.endsWith(".py"),
 );
+const JOB_ENDINGS = ["ordered", "stopped", "resumed", "removed"] as const;
 const ACTIONS = files.flatMap((name) => {
   const source = readFileSync(join(FEATURES, name), "utf8");
   const named = source.matchAll(/action="([a-z]+\.[a-z_]+)"|caller, "(study\.[a-z]+)"/g);
-  return [...named].map(([, one, two]) => one ?? two ?? "");
+  const actions = [...named].map(([, one, two]) => one ?? two ?? "");
+  // A kind of job names what is done with it; the four things that can be done follow its name.
+  return source.includes("= JobKind(")
+    ? actions.flatMap((one) => JOB_ENDINGS.map((ending) => `${one}_${ending}`))
+    : actions;
 });
 
 describe("the audit trail in words", () => {
@@ -80,6 +89,13 @@ describe("the audit trail in words", () => {
       "ada",
       "nobody",
       "tablet",
+    ]);
+  });
+
+  it("names a door as its page does", () => {
+    const opened = { door: "json", interface: "127.0.0.1", port: 39570 };
+    expect(sentences(entry("tracker.opened", opened), t)).toEqual([
+      "opened the door Scripts for trackers, on 127.0.0.1, port 39570",
     ]);
   });
 });

@@ -1,5 +1,6 @@
 /** An entry of the audit trail as sentences. Unknown actions are shown as they are recorded. */
 import type { AuditEntry, Role } from "@shared/api/people";
+import type { Door } from "@shared/api/trackers";
 import type { Translate } from "@shared/i18n/i18n";
 import type { Key } from "../../i18n";
 
@@ -60,6 +61,7 @@ const SENTENCES: Readonly<Record<string, Key>> = {
   "session.overridden": "act.session.overridden",
   "answer.corrected": "act.answer.corrected",
   "answer.imported": "act.answer.imported",
+  "answer.instrument_made": "act.answer.instrument_made",
   "answer.import_undone": "act.answer.import_undone",
   "answer.imported_erased": "act.answer.imported_erased",
   "copy.destroyed": "act.copy.destroyed",
@@ -68,8 +70,14 @@ const SENTENCES: Readonly<Record<string, Key>> = {
   "capture.removed": "act.capture.removed",
   "capture.mapped": "act.capture.mapped",
   "capture.unmapped": "act.capture.unmapped",
+  "tracker.opened": "act.tracker.opened",
+  "tracker.closed": "act.tracker.closed",
   "avatar.created": "act.avatar.created",
   "avatar.version": "act.avatar.version",
+  "avatar.tuning_ordered": "act.avatar.tuning_ordered",
+  "avatar.tuning_stopped": "act.avatar.tuning_stopped",
+  "avatar.tuning_resumed": "act.avatar.tuning_resumed",
+  "avatar.tuning_removed": "act.avatar.tuning_removed",
   "humanoid.added": "act.humanoid.added",
   "humanoid.measured": "act.humanoid.measured",
   "walking.scene_added": "act.walking.scene_added",
@@ -97,6 +105,7 @@ export const KINDS = [
   "device",
   "session",
   "capture",
+  "tracker",
   "avatar",
   "humanoid",
   "walking",
@@ -134,13 +143,24 @@ function roleName(role: unknown, t: TranslateEntry): string {
   return key === undefined ? String(role) : t(key);
 }
 
+const DOOR_KEYS: Readonly<Record<Door["door"], Key>> = {
+  osc: "trackers.door.osc",
+  natnet: "trackers.door.natnet",
+  json: "trackers.door.json",
+};
+
+function doorName(door: unknown, t: TranslateEntry): string {
+  const key = DOOR_KEYS[door as Door["door"]];
+  return key === undefined ? String(door) : t(key);
+}
+
 const list = (values: readonly unknown[]): string => values.map(String).join(", ");
 
 const texts = (details: Readonly<Record<string, unknown>>, t: TranslateEntry) =>
   Object.fromEntries(
     Object.entries(details).map(([name, value]) => [
       name,
-      name === "role" ? roleName(value, t) : String(value),
+      name === "role" ? roleName(value, t) : name === "door" ? doorName(value, t) : String(value),
     ]),
   );
 

@@ -11,13 +11,11 @@ interface AtAGlanceProps {
   readonly onChoose: (key: string) => void;
 }
 
-const COLUMNS: readonly Key[] = [
-  "glance.measure",
-  "glance.task",
-  "glance.differ",
-  "glance.first",
-  "glance.trend",
-];
+const COLUMNS: Readonly<Record<Glance["factor"], readonly Key[]>> = {
+  latency: ["glance.measure", "glance.task", "glance.differ", "glance.first", "glance.trend"],
+  body: ["glance.measure", "glance.task", "glance.differ.bodies", "glance.pairs"],
+};
+const FACTORS = ["body", "latency"] as const;
 const TASKS: Readonly<Record<string, Key>> = {
   hand: "figures.limb.hand",
   foot: "figures.limb.foot",
@@ -25,32 +23,35 @@ const TASKS: Readonly<Record<string, Key>> = {
 
 export function AtAGlance({ measures, onChoose }: AtAGlanceProps): JSX.Element | null {
   const { t } = useTexts();
-  const tested = measures.filter(({ glance }) => glance.length > 0);
-  if (tested.length === 0) return null;
+  const of = (factor: Glance["factor"]) =>
+    measures.filter(({ glance }) => glance[0]?.factor === factor);
+  const factors = FACTORS.filter((factor) => of(factor).length > 0);
+  if (factors.length === 0) return null;
   return (
     <section className={classes.measure} aria-labelledby="glance">
       <Title order={2} id="glance" className={classes.heading ?? ""}>
         {t("glance.title")}
       </Title>
       <p className={classes.about}>{t("glance.about")}</p>
-      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with
-         the keyboard */}
-      <div className={`${classes.result} ${table.scroll}`} tabIndex={0}>
-        <table className={`${table.table} ${classes.glance} numbers`}>
-          <thead>
-            <tr>
-              {COLUMNS.map((column) => (
-                <th key={column} scope="col">
-                  {t(column)}
-                </th>
-              ))}
-            </tr>
-          </thead>
-          {tested.map((measure) => (
-            <Lines key={measure.key} measure={measure} onChoose={onChoose} />
-          ))}
-        </table>
-      </div>
+      {factors.map((factor) => (
+        // biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable.
+        <div key={factor} className={`${classes.result} ${table.scroll}`} tabIndex={0}>
+          <table className={`${table.table} ${classes.glance} numbers`}>
+            <thead>
+              <tr>
+                {COLUMNS[factor].map((column) => (
+                  <th key={column} scope="col">
+                    {t(column)}
+                  </th>
+                ))}
+              </tr>
+            </thead>
+            {of(factor).map((measure) => (
+              <Lines key={measure.key} measure={measure} onChoose={onChoose} />
+            ))}
+          </table>
+        </div>
+      ))}
     </section>
   );
 }
@@ -76,7 +77,7 @@ function Lines({ measure, onChoose }: LinesProps): JSX.Element {
           <td>{taskName(line, t)}</td>
           <td>{line.differ ?? t("glance.untested")}</td>
           <td>{line.first === "" ? t("glance.none") : (line.first ?? t("glance.untested"))}</td>
-          <td>{trendOf(line, t)}</td>
+          {line.factor === "latency" && <td>{trendOf(line, t)}</td>}
         </tr>
       ))}
     </tbody>

@@ -3,6 +3,7 @@ import { SegmentedControl } from "@mantine/core";
 import type { CodebookColumn } from "@shared/api/types";
 import { type JSX, useState } from "react";
 import { useTexts } from "../../i18n";
+import { ScrollBox } from "../../ui/tables";
 import classes from "./ExportTab.module.css";
 
 export function CodebookTable({
@@ -25,29 +26,33 @@ export function CodebookTable({
         onChange={setChosen}
         data={tables}
       />
-      <table className={classes.columns}>
-        <thead>
-          <tr>
-            <th scope="col">{t("export.column")}</th>
-            <th scope="col">{t("export.unit")}</th>
-            <th scope="col">{t("export.meaning")}</th>
-          </tr>
-        </thead>
-        <tbody>
-          {columns
-            .filter((column) => column.table === chosen)
-            .map((column) => (
-              <tr key={column.column}>
-                <td className={classes.name}>{column.column}</td>
-                <td className={classes.unit}>{column.unit === "" ? "–" : column.unit}</td>
-                <td>
-                  {column.meaning}
-                  {column.levels !== "" && <span className={classes.levels}>{column.levels}</span>}
-                </td>
-              </tr>
-            ))}
-        </tbody>
-      </table>
+      <ScrollBox label={t("export.codebook")}>
+        <table className={classes.columns}>
+          <thead>
+            <tr>
+              <th scope="col">{t("export.column")}</th>
+              <th scope="col">{t("export.unit")}</th>
+              <th scope="col">{t("export.meaning")}</th>
+            </tr>
+          </thead>
+          <tbody>
+            {columns
+              .filter((column) => column.table === chosen)
+              .map((column) => (
+                <tr key={column.column}>
+                  <td className={classes.name}>{column.column}</td>
+                  <td className={classes.unit}>{column.unit === "" ? "–" : column.unit}</td>
+                  <td>
+                    {column.meaning}
+                    {column.levels !== "" && (
+                      <span className={classes.levels}>{column.levels}</span>
+                    )}
+                  </td>
+                </tr>
+              ))}
+          </tbody>
+        </table>
+      </ScrollBox>
     </>
   );
 }

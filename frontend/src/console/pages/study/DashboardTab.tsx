@@ -14,10 +14,11 @@ import {
 import type { StudyDetail } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { useIsFetching, useQuery } from "@tanstack/react-query";
-import { type JSX, useEffect } from "react";
+import type { JSX } from "react";
 import { useLocation, useSearch } from "wouter";
 import { useTexts } from "../../i18n";
 import { dashboardQuery } from "../../queries";
+import { kindOf, useOwnSearch, useRememberedKind } from "../../ui/chosenKind";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter, sessionCounts } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
@@ -31,7 +32,7 @@ const AFTERWARDS = ["embodiment", "answers", "tasks", "movement", "quality"] as 
 
 export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const [filter, setFilter] = useFilter();
+  const [filter, setFilter] = useFilter(study.key);
   const query = useQuery(dashboardQuery(study.key, filter, FIRST));
   const waiting = useIsFetching({ queryKey: ["studies", study.key, "dashboard"] }) > 0;
   return (
@@ -144,23 +145,19 @@ function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
   );
 }
 
-/**
- * The filter, kept in the page's address, so that a shared link shows the same figures.
- *
- * It is stored before the `#` of the page's route, and removed when the page is left.
- */
-function useFilter(): readonly [Filter, (next: Filter) => void] {
+/** The filter, kept in the page's address, so that a shared link shows the same figures. */
+function useFilter(studyKey: string): readonly [Filter, (next: Filter) => void] {
   const [place, navigate] = useLocation();
   const search = useSearch();
-  useEffect(() => {
-    const own = window.location.hash;
-    return () => {
-      const { hash, pathname, search: left } = window.location;
-      if (hash !== own && left !== "") history.replaceState(null, "", pathname + hash);
-    };
-  }, []);
+  const filter = { ...filterFrom(new URLSearchParams(search)), kind: kindOf(studyKey, search) };
+  useOwnSearch();
+  useRememberedKind(studyKey, filter.kind);
   // Replace the address: going back leaves the page instead of undoing a filter.
-  const setFilter = (next: Filter): void =>
-    navigate(`${place}?${searchOf(next)}`, { replace: true });
-  return [filterFrom(new URLSearchParams(search)), setFilter];
+  const setFilter = (next: Filter): void => {
+    const chosen = searchOf(next);
+    // Also the usual kind: what was last shown would otherwise take its place.
+    chosen.set("kind", next.kind);
+    navigate(`${place}?${chosen}`, { replace: true });
+  };
+  return [filter, setFilter];
 }

@@ -1,16 +1,17 @@
 /** Tidy CSV for analysis: the contents of the archive, and its download. */
 import { Button, Paper, Stack, Text, Title } from "@mantine/core";
-import type { DataKind, StudyDetail } from "@shared/api/types";
+import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import type { JSX } from "react";
 import { DownloadList } from "../../downloads/DownloadCard";
 import { useExports, useOrder } from "../../downloads/useExports";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { ImportsCard } from "../../imports/ImportsCard";
 import { codebookQuery } from "../../queries";
+import { useKind } from "../../ui/chosenKind";
 import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import { CodebookTable } from "./CodebookTable";
@@ -34,6 +35,7 @@ const FILES = [
   "headset",
   "samples",
   "receipts",
+  "protocol",
   "imported",
   "calibrations",
   "codebook",
@@ -68,7 +70,7 @@ export function ExportTab({ study }: { readonly study: StudyDetail }): JSX.Eleme
 
 function Download({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const [kind, setKind] = useState<DataKind>("people");
+  const [kind, setKind] = useKind(study.key);
   const order = useOrder();
   return (
     <Paper>

@@ -1,9 +1,10 @@
 /** The counterbalancing ledger: every order, every replicate, and who filled it. */
-import type { DataKind, Ledger, Slot, StudyDetail } from "@shared/api/types";
+import type { Ledger, Slot, StudyDetail } from "@shared/api/types";
 import { useQuery } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { ledgerQuery } from "../../queries";
+import { useKind } from "../../ui/chosenKind";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
@@ -15,7 +16,7 @@ import page from "./StudyPage.module.css";
 
 export function LedgerTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const [kind, setKind] = useState<DataKind>("people");
+  const [kind, setKind] = useKind(study.key);
   return (
     <>
       <div className={page.toolbar}>

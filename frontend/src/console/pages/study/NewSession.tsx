@@ -88,8 +88,10 @@ function JoinForm({ study, onClose }: Omit<NewSessionProps, "opened">): JSX.Elem
               <Radio
                 key={value}
                 value={value}
-                label={t(`kind.${value}`)}
+                label={t(value === "people" ? "kind.people.one" : `kind.${value}`)}
                 description={t(`kind.${value}.hint`)}
+                // The explanation is no part of Mantine's label, but people click on it as well.
+                wrapperProps={{ onClick: () => setKind(value), style: { cursor: "pointer" } }}
               />
             ))}
           </Stack>

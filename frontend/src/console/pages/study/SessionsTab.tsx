@@ -10,6 +10,7 @@ import { Link, useLocation } from "wouter";
 import { useTexts } from "../../i18n";
 import { usePermissions } from "../../permissions";
 import { sessionsQuery } from "../../queries";
+import { ActOnScreen } from "../../tour/ActOnScreen";
 import { TryIt } from "../../tour/TryIt";
 import { KindBadge, StatusBadge } from "../../ui/badges";
 import { EmptyState } from "../../ui/EmptyState";
@@ -54,6 +55,7 @@ export function SessionsTab({ study }: { readonly study: StudyDetail }): JSX.Ele
                     </Button>
                   )}
                   {sessions.length === 0 && <TryIt study={study} />}
+                  {sessions.length === 0 && <ActOnScreen study={study} />}
                 </>
               }
             >

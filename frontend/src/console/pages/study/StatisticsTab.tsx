@@ -1,12 +1,13 @@
 /** The study's questions, answered by tests; nothing here can be filtered. */
 import { Title } from "@mantine/core";
 import type { Measure, Statistics } from "@shared/api/analysis";
-import type { DataKind, StudyDetail } from "@shared/api/types";
+import type { StudyDetail } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { statisticsQuery } from "../../queries";
+import { useKind } from "../../ui/chosenKind";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter, sessionCounts } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
@@ -17,7 +18,7 @@ import page from "./StudyPage.module.css";
 
 export function StatisticsTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const [kind, setKind] = useState<DataKind>("people");
+  const [kind, setKind] = useKind(study.key);
   const query = useQuery(statisticsQuery(study.key, kind));
   return (
     <>

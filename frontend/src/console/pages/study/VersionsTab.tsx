@@ -15,6 +15,7 @@ import { useTexts } from "../../i18n";
 import { usePermissions } from "../../permissions";
 import { versionDiffQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
+import { ScrollBox } from "../../ui/tables";
 import page from "./StudyPage.module.css";
 import classes from "./VersionsTab.module.css";
 
@@ -39,29 +40,31 @@ export function VersionsTab({ study }: { readonly study: StudyDetail }): JSX.Ele
           </div>
         )}
       </div>
-      <table className={`${classes.table} numbers`}>
-        <thead>
-          <tr>
-            <th scope="col">{t("versions.number")}</th>
-            <th scope="col">{t("versions.made")}</th>
-            <th scope="col">{t("versions.state")}</th>
-            <th scope="col">sha256</th>
-          </tr>
-        </thead>
-        <tbody>
-          {[...study.versions].reverse().map((version) => (
-            <tr key={version.number}>
-              <th scope="row">{version.number}</th>
-              <td>{dateTime(version.created_at, language)}</td>
-              <td>
-                <Icon name={version.frozen_at === null ? "document" : "lock"} size={15} />{" "}
-                {t(version.frozen_at === null ? "study.open" : "study.frozen")}
-              </td>
-              <td className={classes.hash}>{version.content_hash}</td>
+      <ScrollBox label={t("versions.tab")}>
+        <table className={`${classes.table} numbers`}>
+          <thead>
+            <tr>
+              <th scope="col">{t("versions.number")}</th>
+              <th scope="col">{t("versions.made")}</th>
+              <th scope="col">{t("versions.state")}</th>
+              <th scope="col">sha256</th>
             </tr>
-          ))}
-        </tbody>
-      </table>
+          </thead>
+          <tbody>
+            {[...study.versions].reverse().map((version) => (
+              <tr key={version.number}>
+                <th scope="row">{version.number}</th>
+                <td>{dateTime(version.created_at, language)}</td>
+                <td>
+                  <Icon name={version.frozen_at === null ? "document" : "lock"} size={15} />{" "}
+                  {t(version.frozen_at === null ? "study.open" : "study.frozen")}
+                </td>
+                <td className={classes.hash}>{version.content_hash}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </ScrollBox>
       <Compare study={study} />
     </>
   );

@@ -55,6 +55,9 @@ const exportsEn = {
   "export.file.receipts": "receipts/*.json",
   "export.about.receipts":
     "One per session: how many frames were produced, are stored and are missing, with proof.",
+  "export.file.protocol": "protocol/*.yaml",
+  "export.about.protocol":
+    "Each version of the study as it was run, and its instruments: wording, scales and formulas.",
   "export.file.imported": "imported/*.csv",
   "export.about.imported":
     "Answers collected elsewhere, one file per import; they are in no other table.",
@@ -120,6 +123,9 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.file.receipts": "receipts/*.json",
   "export.about.receipts":
     "Einer je Sitzung: wie viele Bilder entstanden, gespeichert sind und fehlen, mit Nachweis.",
+  "export.file.protocol": "protocol/*.yaml",
+  "export.about.protocol":
+    "Jede Version der Studie, wie sie lief, und ihre Instrumente: Wortlaut, Skalen und Formeln.",
   "export.file.imported": "imported/*.csv",
   "export.about.imported":
     "Anderswo erhobene Antworten, eine Datei je Import; sie stehen in keiner anderen Tabelle.",
@@ -169,7 +175,7 @@ export const studyEn = {
   "design.languages": "Languages",
   "design.seed": "Seed of the orders",
   "procedure.before": "Before",
-  "procedure.block": "Block, once for each of the {{count}} latencies",
+  "procedure.block": "Block, once for each of the {{count}} conditions",
   "procedure.after": "After",
   "procedure.preparation": "Preparation",
   "procedure.active": "Active time",
@@ -252,7 +258,7 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "design.languages": "Sprachen",
   "design.seed": "Startwert der Reihenfolgen",
   "procedure.before": "Vorher",
-  "procedure.block": "Block, je einmal für jede der {{count}} Latenzen",
+  "procedure.block": "Block, je einmal für jede der {{count}} Bedingungen",
   "procedure.after": "Nachher",
   "procedure.preparation": "Vorbereitung",
   "procedure.active": "Aktive Zeit",

@@ -48,6 +48,21 @@ class Ktx2 extends KTX2Loader {
     });
     return this.#ready;
   }
+
+  /** Load a picture in the file; the page's policy lets nobody fetch a `data:` address. */
+  override load(...[url, onLoad, onProgress, onError]: Parameters<KTX2Loader["load"]>): void {
+    const embedded = embeddedIn(url);
+    if (embedded !== null) this.parse(embedded, onLoad, onError);
+    else if (url.startsWith("blob:")) super.load(url, onLoad, onProgress, onError);
+    else onError?.(new Error("The model needs another file."));
+  }
+}
+
+/** The bytes of a base64 `data:` address; null for any other address. */
+export function embeddedIn(url: string): ArrayBuffer | null {
+  const data = /^data:[^,]*;base64,/.exec(url);
+  if (data === null) return null;
+  return Uint8Array.from(atob(url.slice(data[0].length)), (one) => one.charCodeAt(0)).buffer;
 }
 
 /** Decodes meshopt's buffers, in the form in which GLTFLoader asks for it. */

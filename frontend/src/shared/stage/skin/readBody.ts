@@ -1,8 +1,8 @@
 /** Read a body from the bytes of its model's file. This module imports three.js. */
-import { TextureLoader } from "three";
+import { LoadingManager, TextureLoader } from "three";
 import { GLTFLoader, type GLTFParser } from "three/addons/loaders/GLTFLoader.js";
 import type { BodyModel } from "./bodyModel";
-import { makeDecoders } from "./decoders";
+import { embeddedIn, makeDecoders } from "./decoders";
 import { bodyOfGltf } from "./gltfBody";
 import type { BodyBinding } from "./pose";
 
@@ -34,16 +34,20 @@ function keepToFile(parser: GLTFParser): void {
     textureLoader: TextureLoader;
     fileLoader: { load: (...all: FileLoaderArguments) => void };
   };
-  own.textureLoader = new TextureLoader(parser.options.manager);
+  const inFile = new LoadingManager();
+  inFile.setURLModifier((url) => (/^(data|blob):/.test(url) ? url : NO_PICTURE));
+  own.textureLoader = new TextureLoader(inFile);
   own.fileLoader = Object.assign(parser.fileLoader, {
     load: (url: string, onLoad: (data: ArrayBuffer) => void, _: unknown, onError: () => void) => {
-      const data = /^data:[^,]*;base64,/.exec(url);
-      if (data === null) return onError();
-      const bytes = Uint8Array.from(atob(url.slice(data[0].length)), (one) => one.charCodeAt(0));
-      onLoad(bytes.buffer);
+      const embedded = embeddedIn(url);
+      if (embedded === null) onError();
+      else onLoad(embedded);
     },
   }) as typeof own.fileLoader;
 }
+
+/** An address without a picture, for those that lead out of the file. */
+const NO_PICTURE = "data:,";
 
 type FileLoaderArguments = [
   url: string,

@@ -2,7 +2,7 @@
 import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { AXES } from "@shared/avatar/anatomy.generated";
-import type { ConfigurationFile } from "../physics/settings";
+import type { ConfigurationFile } from "@shared/avatar/physics/settings";
 import type { AvatarAnswer, PhysicsSetup } from "../setup";
 
 export const VECTORS = resolve(import.meta.dirname, "../../../../../tests/vectors/avatar");

@@ -3,6 +3,18 @@ import wasmUrl from "@mujoco/mujoco/mujoco.wasm?url";
 import workerUrl from "./bodiesWorker?worker&url";
 import type { BodiesPort } from "./messages";
 
+/**
+ * Have the worker and MuJoCo in the browser's cache before they are needed: their names contain a
+ * hash, so they are kept. What fails now is fetched again, and reported, when the bodies are made.
+ */
+export async function fetchBeforehand(): Promise<void> {
+  const wanted = [wasmUrl, workerUrl].map(async (url) => {
+    const answer = await fetch(url, { priority: "low" });
+    await answer.arrayBuffer();
+  });
+  await Promise.allSettled(wanted);
+}
+
 export async function startWorker(): Promise<{ port: BodiesPort; wasm: ArrayBuffer }> {
   const answer = await fetch(wasmUrl);
   if (!answer.ok) throw new Error(`MuJoCo could not be loaded (HTTP ${answer.status}).`);

@@ -5,7 +5,7 @@
 import { FINGER_PARTS, JOINTS } from "@shared/avatar/anatomy.generated";
 import { GOAL_PARTS, type Goals } from "@shared/avatar/goals";
 import type { Place } from "@shared/avatar/hips";
-import type { Health } from "../physics/simulation";
+import type { Health } from "@shared/avatar/physics/simulation";
 
 const POSE = 3 + 4 * JOINTS.length;
 const FINGERS = 4 * FINGER_PARTS.length;

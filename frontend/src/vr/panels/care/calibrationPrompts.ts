@@ -2,43 +2,9 @@
  * What the participant is told while the body is measured: one step at a time, and in words what is
  * still wrong. The steps themselves, and when one is good, are decided by the calibration.
  */
-import type { GoalPart } from "../../tracking/tracked";
-import type { PanelScreen } from "../surface/screen";
+import type { CalibrationProblem, CalibrationPrompt } from "../../calibration";
+import type { PanelButton, PanelScreen } from "../surface/screen";
 import type { PanelWords } from "../texts";
-
-export type CalibrationStep =
-  | "fit"
-  | "square"
-  | "n_pose"
-  | "t_pose"
-  | "look_around"
-  | "squat_reach";
-
-/** What keeps a step from being done, most important first; lengths in metres. */
-export type CalibrationProblem =
-  | {
-      readonly kind: "off_square";
-      readonly towards: "forward" | "back" | "left" | "right";
-      readonly distanceM: number;
-    }
-  | { readonly kind: "turned"; readonly towards: "left" | "right" }
-  | {
-      readonly kind:
-        | "looking"
-        | "bent_knees"
-        | "bent_elbows"
-        | "arms_not_down"
-        | "arms_not_level"
-        | "arm_too_high"
-        | "feet_apart"
-        | "swapped_hands"
-        | "swapped_shins"
-        | "moving"
-        | "not_bent"
-        | "not_reached";
-    }
-  | { readonly kind: "lost"; readonly part: GoalPart }
-  | { readonly kind: "implausible"; readonly valueM: number };
 
 const centimetres = (metres: number): number => Math.round(metres * 100);
 
@@ -55,63 +21,54 @@ export function problemText(words: PanelWords, problem: CalibrationProblem): str
       return words("problem.lost", { part: words(`part.${problem.part}`) });
     case "implausible":
       return words("problem.implausible", { valueCm: centimetres(problem.valueM) });
+    case "goal_error": {
+      const errorCm = centimetres(problem.errorM);
+      return words("problem.goal_error", { part: words(`part.${problem.part}`), errorCm });
+    }
     default:
       return words(`problem.${problem.kind}`);
   }
 }
 
-export interface CalibrationPrompt {
-  readonly step: CalibrationStep;
-  /** The step's number among those of this calibration, from 1. */
-  readonly number: number;
-  readonly total: number;
-  readonly problem: CalibrationProblem | null;
-  /** How much of the time to hold still has passed, from 0 to 1. */
-  readonly held: number;
-}
+const TENTHS = 10;
 
-/** The screen of a step; `sharp` is the target with which the wearer ends the step `fit`. */
+/**
+ * The screen of a step. Its targets: `skip` leaves the step out; at the mirror, `good` ends the
+ * calibration and `bad` repeats it.
+ */
 export function calibrationScreen(words: PanelWords, prompt: CalibrationPrompt): PanelScreen {
-  const { step, number, total, problem, held } = prompt;
+  const { step, number, total, problem, held, secondsLeft, again } = prompt;
+  const isMirror = step === "mirror";
   const isHeld = problem === null && held > 0;
-  const text = words("calibration.step", { number, total });
+  const why = again === null ? null : `${words("calibration.again")} ${problemText(words, again)}`;
+  const texts = [why, words(`calibration.${step}.body`)];
+  const seconds = words("calibration.seconds", { seconds: secondsLeft });
+  const measuring = isMirror ? seconds : words("calibration.measuring", { seconds });
   return {
     key: `calibration ${step}`,
-    isLow: step !== "fit",
-    lead: text,
+    // Who looks straight ahead sees the mirror, and the sign below.
+    isLow: true,
+    isBeside: isMirror,
+    lead: words("calibration.step", { number, total }),
     title: words(`calibration.${step}.title`),
-    body: [{ kind: "prose", text: words(`calibration.${step}.body`) }],
+    body: texts.flatMap((text) => (text === null ? [] : [{ kind: "prose", text } as const])),
     problem: problem === null ? null : problemText(words, problem),
-    ...(isHeld
-      ? { progress: { done: Math.ceil(held * 10), of: 10, text: words("calibration.measuring") } }
-      : {}),
-    ...(step === "fit"
-      ? {
-          buttons: [
-            {
-              target: "sharp",
-              text: words("calibration.fit.sharp"),
-              side: "right",
-              isPrimary: true,
-            } as const,
-          ],
-        }
-      : {}),
+    ...(isHeld && {
+      progress: { done: Math.ceil(held * TENTHS), of: TENTHS, text: measuring },
+    }),
+    ...buttonsOf(words, prompt),
   };
 }
 
-/** A step is repeated because a goal was too far off in the test of the calibration. */
-export function repeatScreen(words: PanelWords, part: GoalPart, errorM: number): PanelScreen {
-  const values = { part: words(`part.${part}`), errorCm: (errorM * 100).toFixed(1) };
-  return {
-    key: `calibration again ${part}`,
-    title: words("calibration.again.title"),
-    body: [{ kind: "prose", text: words("calibration.again.body", values) }],
-  };
+function buttonsOf(
+  words: PanelWords,
+  { step, canSkip }: CalibrationPrompt,
+): { readonly buttons?: readonly PanelButton[] } {
+  if (step === "mirror") {
+    const bad = { target: "bad", text: words("calibration.mirror.bad"), side: "left" } as const;
+    const good = { target: "good", text: words("calibration.mirror.good"), side: "right" } as const;
+    return { buttons: [bad, { ...good, isPrimary: true }] };
+  }
+  if (!canSkip) return {};
+  return { buttons: [{ target: "skip", text: words("calibration.skip"), side: "left" }] };
 }
-
-export const calibratedScreen = (words: PanelWords): PanelScreen => ({
-  key: "calibration done",
-  title: words("calibration.done.title"),
-  body: [{ kind: "prose", text: words("calibration.done.body") }],
-});

@@ -1,10 +1,23 @@
 /** Screens that tell the participant something: wait, take the headset off, a break, the edge. */
 import type { Paragraph } from "@shared/text";
-import type { PanelButton, PanelScreen } from "../surface/screen";
+import type { PanelScreen } from "../surface/screen";
 import type { PanelWords } from "../texts";
 
 const prose = (...texts: readonly string[]): readonly Paragraph[] =>
   texts.map((text) => ({ kind: "prose", text }));
+
+/** A title, some sentences, and something to know beside a sign; empty sentences are left out. */
+export const prompt = (
+  key: string,
+  title: string | undefined,
+  texts: readonly string[],
+  problem: string | null = null,
+): PanelScreen => ({
+  key,
+  ...(title === undefined ? {} : { title }),
+  body: prose(...texts.filter((text) => text !== "")),
+  problem,
+});
 
 /** Connected, and nothing has begun. */
 export const standbyScreen = (words: PanelWords, holdsControllers: boolean): PanelScreen => ({
@@ -100,32 +113,22 @@ export function boundaryScreen(words: PanelWords, problem: BoundaryProblem): Pan
     case "near":
       return { key: "boundary near", title, problem: words("boundary.body") };
     case "missing":
-      return { key: "boundary missing", problem: words("boundary.missing") };
+      return {
+        key: "boundary missing",
+        title: words("boundary.area"),
+        problem: words("boundary.missing"),
+      };
     case "small": {
       const [[haveM, haveDepthM], [needM, needDepthM]] = [problem.haveM, problem.needM];
-      const metres = (value: number) => value.toFixed(1);
+      const metres = (value: number) => value.toFixed(1).replace(".", words("decimal"));
       const sizes = {
         haveM: metres(haveM),
         haveDepthM: metres(haveDepthM),
         needM: metres(needM),
         needDepthM: metres(needDepthM),
       };
-      return { key: "boundary small", problem: words("boundary.small", sizes) };
+      const area = words("boundary.area");
+      return { key: "boundary small", title: area, problem: words("boundary.small", sizes) };
     }
   }
-}
-
-/** The look into the mirror after calibration; `good` and `bad` are the targets. */
-export function mirrorScreen(words: PanelWords): PanelScreen {
-  const buttons: readonly PanelButton[] = [
-    { target: "bad", text: words("mirror.bad"), side: "left" },
-    { target: "good", text: words("mirror.good"), side: "right", isPrimary: true },
-  ];
-  return {
-    key: "mirror",
-    isLow: true,
-    title: words("mirror.title"),
-    body: prose(words("mirror.body")),
-    buttons,
-  };
 }

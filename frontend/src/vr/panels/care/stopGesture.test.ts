@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { frameOf, type Wearing } from "../testing/pointing";
-import { StopGesture } from "./stopGesture";
+import { StopGesture, type StopRules } from "./stopGesture";
 
 type Pose = Omit<Wearing, "timeS">;
 const RAISED: Pose = { parts: { RightHand: [0.2, 1.9, -0.1] } };
@@ -50,6 +50,31 @@ describe("stopping", () => {
     expect(stops([3, { left: fist, right: fist }])).toEqual([]);
     const arms = { LeftHand: [-0.8, 1.4, 0], RightHand: [0.8, 1.4, 0] } as const;
     expect(stops([3, { parts: arms }])).toEqual([]);
+  });
+
+  it("takes both hands at boxes as high as a raised hand, and nothing while it is off", () => {
+    const gesture = (rules: StopRules, pose: Pose): boolean => {
+      const one = new StopGesture();
+      const frames = Array.from({ length: 200 }, (_, at) => frameOf({ timeS: at / 90, ...pose }));
+      return frames.some((frame) => one.update(frame, rules)?.share === 1);
+    };
+    const both: Pose = { parts: { RightHand: [0.2, 1.9, -0.1], LeftHand: [-0.2, 1.9, -0.1] } };
+    expect(gesture({ needsBothHands: true }, RAISED)).toBe(false);
+    expect(gesture({ needsBothHands: true }, both)).toBe(true);
+    expect(gesture({ needsBothHands: true }, GRIPS)).toBe(true);
+    expect(gesture({ isOff: true }, GRIPS)).toBe(false);
+  });
+
+  it("does not count grips that were held while it was off, until they were let go", () => {
+    const one = new StopGesture();
+    const stopped: number[] = [];
+    for (let frame = 0; frame < 5 * 90; frame++) {
+      const timeS = frame / 90;
+      const pose = timeS > 3 && timeS < 3.5 ? CALM : GRIPS;
+      const progress = one.update(frameOf({ timeS, ...pose }), { isOff: timeS < 0.5 });
+      if (progress?.share === 1) stopped.push(timeS);
+    }
+    expect(stopped).toEqual([4.5]);
   });
 
   it("shows how far it has come, from a quarter of a second on", () => {

@@ -1,5 +1,6 @@
 /** The screens of a form: its beginning, one question at a time, and the answers to check. */
-import type { Administration } from "@shared/api/types";
+import type { Administration, Submission } from "@shared/api/types";
+import type { FormDraft } from "@shared/forms/draft";
 import type { Choosing, NumberField, Question } from "@shared/forms/questions";
 import { inLanguage } from "@shared/text";
 import type { Choice, Choices, PanelButton, PanelScreen } from "../surface/screen";
@@ -9,8 +10,11 @@ import type { PanelWords } from "../texts";
 export const SPOKEN = "spoken";
 export const NOTHING = "nothing";
 
-/** More answers than this, if each has a name, would need more rows than a panel has. */
-const MAX_ROWS = 8;
+/** Whether something in a form was said aloud, which somebody has to write down. */
+export const hasSpoken = (draft: FormDraft, submission: Submission): boolean =>
+  Object.entries(draft.data).some(
+    ([item, value]) => value === SPOKEN && submission.answers[item] === null,
+  );
 
 export interface Shown {
   readonly administration: Administration;
@@ -107,22 +111,26 @@ function choicesOf(question: Question, value: unknown, words: PanelWords): Choic
     }),
   );
   const ends = question.kind === "rating" ? question.ends : null;
+  // Names are read in full, however many there are: the panel grows with them.
   const isShort = question.kind === "rating" && !isNumbered;
-  return isShort || items.length > MAX_ROWS
-    ? { layout: "steps", items, ends }
-    : { layout: "rows", items };
+  return isShort ? { layout: "steps", items, ends } : { layout: "rows", items };
 }
 
+/** As many as fit the field of the entry. */
+const MOST_SIGNS = 12;
 const SIGNS = ["1", "2", "3", "4", "5", "6", "7", "8", "9"] as const;
 
 function keypad(question: NumberField, value: unknown, words: PanelWords): Choices {
   const key = (sign: string): Choice => ({ target: `key ${sign}`, text: sign });
-  const entry = value === undefined || value === null ? "" : String(value);
+  const decimal = words("decimal");
+  const entry = value === undefined || value === null ? "" : String(value).replace(".", decimal);
+  const hasNegatives = question.low === null || question.low < 0;
   const items = [
     ...SIGNS.map(key),
-    question.whole ? { target: "key clear", text: "C" } : key("."),
+    question.whole ? { target: "key clear", text: "C" } : { target: "key .", text: decimal },
     key("0"),
     { target: "key delete", text: words("form.delete") },
+    ...(hasNegatives ? [{ target: "key minus", text: "±" }] : []),
   ];
   const shown = entry === "" ? "" : `${entry} ${question.unit}`.trim();
   return { layout: "keys", items, entry: shown, hint: question.hint };
@@ -133,15 +141,18 @@ export function typed(value: unknown, key: string): string | undefined {
   const before = value === undefined || value === null ? "" : String(value);
   if (key === "clear") return undefined;
   if (key === "delete") return before.length <= 1 ? undefined : before.slice(0, -1);
+  if (key === "minus") return before.startsWith("-") ? before.slice(1) || undefined : `-${before}`;
   if (key === "." && before.includes(".")) return before;
-  if (before.length >= 7) return before;
-  return key === "." && before === "" ? "0." : before + key;
+  if (before.length >= MOST_SIGNS) return before;
+  return key === "." && /^-?$/.test(before) ? `${before}0.` : before + key;
 }
 
 /** How an answer reads in the list of answers. */
 export function answerText(question: Question, value: unknown, words: PanelWords): string {
   if (value === undefined || value === null || value === "") return words("form.unanswered");
-  if (question.kind === "number") return `${value} ${question.unit}`.trim();
+  if (question.kind === "number") {
+    return `${String(value).replace(".", words("decimal"))} ${question.unit}`.trim();
+  }
   if (question.kind === "text") return String(value);
   const option = question.options.find((one) => one.value === value);
   if (option === undefined) return String(value);

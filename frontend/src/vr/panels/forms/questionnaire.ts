@@ -8,7 +8,7 @@
 import type { ApiError } from "@shared/api/request";
 import type { Administration, Answer } from "@shared/api/types";
 import { deliver, type Submit } from "@shared/forms/deliver";
-import { pageShown } from "@shared/forms/draft";
+import { type FormDraft, pageShown } from "@shared/forms/draft";
 import {
   answer,
   type Filling,
@@ -33,7 +33,6 @@ import {
   questionScreen,
   REVIEW_ROWS,
   reviewScreen,
-  SPOKEN,
   typed,
 } from "./questionScreens";
 
@@ -168,6 +167,11 @@ export class Questionnaire implements PanelContent {
     }
   }
 
+  /** The question was covered by something else: its time begins again. */
+  shownAgain(nowMs: number): void {
+    this.#filling = { ...this.#filling, turn: pageShown(nowMs) };
+  }
+
   press(target: string, nowMs: number): void {
     switch (this.#stage.name) {
       case "intro":
@@ -276,10 +280,9 @@ export class Questionnaire implements PanelContent {
     );
   }
 
-  /** The open questions that the participant wants to answer aloud. */
-  get spoken(): readonly string[] {
-    const { data } = this.#filling.draft;
-    return this.#options.administration.item_order.filter((key) => data[key] === SPOKEN);
+  /** What has been filled in so far. */
+  get draft(): FormDraft {
+    return this.#filling.draft;
   }
 
   async #deliver(submission: Parameters<Submit>[0]): Promise<void> {

@@ -113,7 +113,7 @@ describe("a screen on a panel", () => {
   });
 
   it("that holds too much for any panel is refused, with what to do", () => {
-    expect(() => lay({ choices: { layout: "rows", items: rows(30) } })).toThrow(/divide its text/);
+    expect(() => lay({ choices: { layout: "rows", items: rows(60) } })).toThrow(/divide its text/);
   });
 
   it("shortens what only has to be recognised", () => {

@@ -67,8 +67,13 @@ const ROW = 60;
 const BUTTON = 72;
 const RADIUS = 14;
 
-/** How much larger a panel may grow until its text fits. */
-const GROWTH = [1, 1.12, 1.25, 1.4, 1.6] as const;
+/**
+ * How much larger a panel may grow until its text fits. The last ones are wider than the view: a
+ * question with forty answers is read by turning the head, which is better than not at all.
+ */
+const GROWTH = [1, 1.12, 1.25, 1.4, 1.6, 2, 2.5, 3.2, 4] as const;
+
+const LARGEST = Math.max(...GROWTH);
 
 export class PanelLayoutError extends Error {
   override name = "PanelLayoutError";
@@ -81,8 +86,8 @@ export function layOut(screen: PanelScreen, measure: Measure): Layout {
     if (layout !== null) return layout;
   }
   throw new PanelLayoutError(
-    `The screen ${screen.key} does not fit a panel of ${PANEL_DMM.width * 1.6} by ` +
-      `${PANEL_DMM.height * 1.6} dmm: divide its text into pages or its answers into fewer rows.`,
+    `The screen ${screen.key} does not fit a panel of ${PANEL_DMM.width * LARGEST} by ` +
+      `${PANEL_DMM.height * LARGEST} dmm: divide its text into pages or its answers into fewer rows.`,
   );
 }
 

@@ -51,6 +51,8 @@ export interface PanelScreen {
   readonly key: string;
   /** Stands below the view straight ahead, so that the mirror stays to be seen. */
   readonly isLow?: boolean;
+  /** Stands to the right of the view straight ahead, so that the whole mirror stays to be seen. */
+  readonly isBeside?: boolean;
   /** A short line above the title: the stem of a questionnaire, the name of a step. */
   readonly lead?: string;
   readonly title?: string;

@@ -16,7 +16,6 @@ import {
   pauseScreen,
   Questionnaire,
   Reading,
-  repeatScreen,
   StillContent,
   StopGesture,
   StopRing,
@@ -24,7 +23,6 @@ import {
   takeOffScreen,
   waitingScreen,
 } from "..";
-import { mirrorScreen } from "../care/prompts";
 import { frameOf, rayTo } from "./pointing";
 
 /** 25 pixels a degree, as a Quest 3 shows. */
@@ -84,7 +82,14 @@ class Gallery {
 
   screens(language: string): Readonly<Record<string, PanelScreen>> {
     const words = panelWords(language);
-    const calibration = { number: 3, total: 5, held: 0, problem: null } as const;
+    const prompt = {
+      total: 6,
+      held: 0,
+      secondsLeft: 1,
+      problem: null,
+      again: null,
+      canSkip: false,
+    } as const;
     return {
       standby: standbyScreen(words, true),
       waiting: waitingScreen(words, null, null),
@@ -92,23 +97,44 @@ class Gallery {
       take_off_form: takeOffScreen(words, true),
       finished: finishedScreen(words),
       comfort: comfortScreen(words),
-      mirror: mirrorScreen(words),
       boundary_near: boundaryScreen(words, { kind: "near" }),
       boundary_small: boundaryScreen(words, { kind: "small", haveM: [1.5, 1.2], needM: [2, 2.1] }),
-      fit: calibrationScreen(words, { ...calibration, step: "fit", number: 1 }),
       square: calibrationScreen(words, {
-        ...calibration,
+        ...prompt,
         step: "square",
-        number: 2,
+        number: 1,
         problem: { kind: "off_square", towards: "forward", distanceM: 0.32 },
       }),
       n_pose: calibrationScreen(words, {
-        ...calibration,
+        ...prompt,
         step: "n_pose",
-        problem: { kind: "bent_knees" },
+        number: 2,
+        problem: { kind: "arms_not_down" },
+        again: { kind: "bent_knees" },
       }),
-      t_pose: calibrationScreen(words, { ...calibration, step: "t_pose", number: 4, held: 0.6 }),
-      repeat: repeatScreen(words, "RightLowerLeg", 0.042),
+      t_pose: calibrationScreen(words, { ...prompt, step: "t_pose", number: 3, held: 0.6 }),
+      t_pose_unseen: calibrationScreen(words, {
+        ...prompt,
+        step: "t_pose",
+        number: 3,
+        problem: { kind: "lost", part: "LeftHand" },
+        again: { kind: "goal_error", part: "RightLowerLeg", errorM: 0.042 },
+        canSkip: true,
+      }),
+      squat: calibrationScreen(words, { ...prompt, step: "squat", number: 4 }),
+      reach: calibrationScreen(words, {
+        ...prompt,
+        step: "reach",
+        number: 5,
+        problem: { kind: "not_reached" },
+      }),
+      mirror: calibrationScreen(words, {
+        ...prompt,
+        step: "mirror",
+        number: 6,
+        held: 0.3,
+        secondsLeft: 6,
+      }),
     };
   }
 

@@ -28,6 +28,8 @@ export const de: Record<keyof typeof en, string> = {
   "form.spoken.lead":
     "Hier können Sie nicht schreiben. Sagen Sie Ihre Antwort der Versuchsleitung; sie schreibt sie auf.",
   "form.unanswered": "nicht beantwortet",
+  "form.tooLong":
+    "Das ist zu lang für das Headset. Bitte sagen Sie der Versuchsleitung Bescheid; sie fragt es mündlich.",
   "form.delete": "Löschen",
   "sending.title": "Ihre Antworten werden gesendet",
   "sending.body": "Einen Moment.",
@@ -49,9 +51,9 @@ export const de: Record<keyof typeof en, string> = {
   "standby.body":
     "Sie sind verbunden. Sehen Sie sich in Ruhe um. Die Versuchsleitung beginnt, wenn Sie bereit sind.",
   "standby.stop":
-    "Sie können jederzeit anhalten: Halten Sie eine Hand eine Sekunde lang über den Kopf, oder drücken Sie beide Griffe.",
+    "Sie können jederzeit anhalten: Halten Sie eine Sekunde lang eine Hand über den Kopf, oder drücken Sie so lange beide Greiftasten.",
   "standby.stopHands":
-    "Sie können jederzeit anhalten: Halten Sie eine Hand eine Sekunde lang über den Kopf.",
+    "Sie können jederzeit anhalten: Halten Sie eine Sekunde lang eine Hand über den Kopf.",
   "pairing.title": "Dieses Headset verbinden",
   "pairing.body":
     "Nehmen Sie das Headset kurz ab und geben Sie den Code ein, den die Versuchsleitung zeigt.",
@@ -62,10 +64,11 @@ export const de: Record<keyof typeof en, string> = {
   "takeOff.body":
     "Der nächste Teil findet nicht im Headset statt. Bleiben Sie stehen, schließen Sie kurz die Augen und heben Sie das Headset ab. Die Versuchsleitung ist bei Ihnen.",
   "takeOff.told": "Die Versuchsleitung weiß Bescheid.",
-  "takeOff.form": "Die nächsten Fragen stehen auf dem Tablet. Bitte nehmen Sie das Headset ab.",
+  "takeOff.form":
+    "Die nächsten Fragen stehen auf dem Tablet. Bleiben Sie stehen, schließen Sie kurz die Augen und heben Sie das Headset ab.",
   "finished.title": "Das war alles, vielen Dank",
   "finished.body": "Sie können das Headset jetzt abnehmen. Die Versuchsleitung hilft Ihnen.",
-  "stop.hold": "Halten, um anzuhalten",
+  "stop.hold": "Halten für Stopp",
   "stop.cancel": "Hand senken, um weiterzumachen",
   "stop.cancelGrips": "Loslassen, um weiterzumachen",
   "pause.title": "Sie haben angehalten",
@@ -74,49 +77,60 @@ export const de: Record<keyof typeof en, string> = {
   "pause.telling": "Die Versuchsleitung wird benachrichtigt.",
   "pause.untold": "Die Versuchsleitung konnte nicht benachrichtigt werden. Bitte rufen Sie laut.",
   "pause.operator.title": "Eine kurze Pause",
-  "pause.operator.body": "Die Versuchsleitung hat die Sitzung angehalten. Sie müssen nichts tun.",
+  "pause.operator.body": "Die Sitzung ist angehalten. Sie müssen nichts tun.",
   "pause.resume": "Es geht weiter, wenn die Versuchsleitung fortfährt.",
   "comfort.title": "Wie geht es Ihnen?",
   "comfort.body":
     "Wenn Ihnen schwindelig oder unwohl ist, sagen Sie es oder halten Sie an. Das hat für Sie keine Nachteile.",
+  decimal: ",",
+  "boundary.area": "Ihr Spielbereich",
   "boundary.title": "Nahe am Rand",
   "boundary.body": "Bitte gehen Sie zurück in die Mitte des Raums.",
   "boundary.missing":
     "In diesem Headset ist kein Spielbereich eingerichtet. Bitten Sie die Versuchsleitung, einen einzurichten, bevor Sie sich bewegen.",
   "boundary.small":
     "Der Spielbereich ist kleiner, als diese Studie ihn braucht: {{haveM}} mal {{haveDepthM}} m statt {{needM}} mal {{needDepthM}} m. Bitte sagen Sie der Versuchsleitung Bescheid.",
-  "mirror.title": "Sehen Sie in den Spiegel",
-  "mirror.body":
-    "Bewegen Sie langsam Arme und Beine. Bewegt sich die Figur wie Sie? Die Versuchsleitung sieht auch hin.",
-  "mirror.good": "Sie bewegt sich wie ich",
-  "mirror.bad": "Etwas stimmt nicht",
-  "mirror.repeat": "Dann messen wir noch einmal.",
+  "steppingIn.title": "Treten Sie in die Figur hinein",
+  "steppingIn.body":
+    "Stellen Sie sich in die durchsichtige Figur und strecken Sie die Arme so aus wie sie. Drücken Sie dann beide Greiftasten.",
+  "steppingIn.bodyHands":
+    "Stellen Sie sich in die durchsichtige Figur und strecken Sie die Arme so aus wie sie. Machen Sie dann zwei Fäuste.",
+  "ready.body": "Die Versuchsleitung beginnt, sobald Sie bereit sind.",
+  "preparing.countdown": "Beginnt in {{seconds}} s",
+  "aloud.title": "Bitte antworten Sie mündlich",
+  "aloud.body":
+    "Die Versuchsleitung stellt Ihnen die Fragen und schreibt auf, was Sie sagen. Sie können das Headset aufbehalten.",
+  "feet.body":
+    "Diese Aufgabe kann nicht beginnen: Ihre Füße werden gerade nicht gemessen. Die Versuchsleitung weiß Bescheid.",
+  "elsewhere.title": "Bitte sehen Sie auf das Tablet",
+  "elsewhere.form": "Die nächsten Fragen stehen auf dem Tablet. Danach geht es hier weiter.",
+  "elsewhere.body": "Der nächste Teil ist auf dem Tablet. Danach geht es hier weiter.",
+  "boundary.goOn": "So weitermachen",
+  "form.loading": "Ihre Fragen werden geholt",
   "calibration.step": "Schritt {{number}} von {{total}}",
-  "calibration.fit.title": "Rücken Sie das Headset zurecht",
-  "calibration.fit.body":
-    "Schieben Sie das Headset auf und ab, bis dieser Text scharf ist, und ziehen Sie dann das Band fest. Bleibt er unscharf, stellen Sie den Abstand der Linsen ein.",
-  "calibration.fit.sharp": "Der Text ist scharf",
-  "calibration.square.title": "Gehen Sie auf das Quadrat",
-  "calibration.square.body": "Stellen Sie sich auf das Quadrat am Boden und sehen Sie geradeaus.",
+  "calibration.square.title": "Bleiben Sie auf dem Quadrat stehen",
+  "calibration.square.body":
+    "Sehen Sie geradeaus. Ist dieser Text unscharf? Dann schieben Sie das Headset nach oben oder unten, bis er scharf ist.",
   "calibration.n_pose.title": "Stehen Sie aufrecht, Arme unten",
   "calibration.n_pose.body":
     "Stehen Sie gerade, die Füße nebeneinander. Lassen Sie beide Arme hängen. Sehen Sie geradeaus und bleiben Sie 2 Sekunden still.",
   "calibration.t_pose.title": "Strecken Sie die Arme zur Seite",
   "calibration.t_pose.body":
     "Beide Arme gestreckt, in Höhe der Schultern, Handflächen nach unten. Bleiben Sie 2 Sekunden still.",
-  "calibration.look_around.title": "Sehen Sie sich um",
-  "calibration.look_around.body":
-    "Drehen Sie den Kopf langsam nach links, rechts, oben und unten, zehn Sekunden lang. Die Füße bleiben, wo sie sind.",
-  "calibration.squat_reach.title": "Beugen und strecken",
-  "calibration.squat_reach.body":
-    "Gehen Sie ein wenig in die Knie, kommen Sie wieder hoch und strecken Sie dann beide Hände nach vorn.",
-  "calibration.measuring": "Bleiben Sie so",
-  "calibration.moving": "Bitte halten Sie still.",
-  "calibration.done.title": "Fertig",
-  "calibration.done.body": "Ihr Körper ist vermessen. Vielen Dank.",
-  "calibration.again.title": "Bitte noch einmal",
-  "calibration.again.body":
-    "Abweichung bei „{{part}}“: {{errorCm}} cm. Wir wiederholen diesen Schritt.",
+  "calibration.measuring": "Bleiben Sie so: {{seconds}}",
+  "calibration.squat.title": "In die Knie gehen und wieder hoch",
+  "calibration.squat.body":
+    "Beugen Sie die Knie ein wenig, als wollten Sie sich setzen. Richten Sie sich wieder auf und bleiben Sie ruhig stehen.",
+  "calibration.reach.title": "Nach vorn greifen",
+  "calibration.reach.body": "Strecken Sie beide Hände nach vorn aus, so hoch wie die Schultern.",
+  "calibration.mirror.title": "Sehen Sie in den Spiegel",
+  "calibration.mirror.body":
+    "Bewegen Sie langsam Arme und Beine. Bewegt sich die Figur so wie Sie? Wenn Sie nichts drücken, geht es von selbst weiter.",
+  "calibration.mirror.good": "Sie bewegt sich wie ich",
+  "calibration.mirror.bad": "Etwas stimmt nicht",
+  "calibration.again": "Bitte noch einmal:",
+  "calibration.seconds": "{{seconds}} s",
+  "calibration.skip": "Das auslassen",
   "problem.off_square.forward": "Bitte gehen Sie {{distanceCm}} cm nach vorn.",
   "problem.off_square.back": "Bitte gehen Sie {{distanceCm}} cm zurück.",
   "problem.off_square.left": "Bitte gehen Sie {{distanceCm}} cm nach links.",
@@ -139,8 +153,11 @@ export const de: Record<keyof typeof en, string> = {
     "Gerade nicht zu sehen: {{part}}. Bitte bewegen Sie sich so, dass das Headset freie Sicht hat.",
   "problem.not_bent": "Bitte gehen Sie etwas tiefer in die Knie.",
   "problem.not_reached": "Bitte strecken Sie die Hände weiter nach vorn.",
+  "problem.palms_not_down": "Bitte drehen Sie die Handflächen zum Boden.",
+  "problem.not_upright": "Bitte richten Sie sich wieder ganz auf.",
+  "problem.goal_error": "{{part}}: {{errorCm}} cm neben der richtigen Stelle.",
   "problem.implausible":
-    "Das passt nicht: {{valueCm}} cm. Bitte stehen Sie aufrecht und versuchen Sie es noch einmal, oder sagen Sie der Versuchsleitung Bescheid.",
+    "Das ergibt eine Größe von {{valueCm}} cm. Bitte stehen Sie aufrecht, oder sagen Sie der Versuchsleitung, dass der Boden des Headsets nicht stimmt.",
   "part.Head": "Kopf",
   "part.Hips": "Hüfte",
   "part.LeftHand": "linke Hand",

@@ -26,6 +26,8 @@ export const en = {
   "form.spoken.lead":
     "You cannot type here. Say your answer to the experimenter, who writes it down.",
   "form.unanswered": "not answered",
+  "form.tooLong":
+    "This is too long to be shown in the headset. Please tell the experimenter, who asks it aloud.",
   "form.delete": "Delete",
   "sending.title": "Sending your answers",
   "sending.body": "One moment.",
@@ -58,7 +60,8 @@ export const en = {
   "takeOff.body":
     "The next part is not in the headset. Stand still, close your eyes for a moment and lift the headset off. The experimenter is with you.",
   "takeOff.told": "The experimenter has been told.",
-  "takeOff.form": "The next questions are on the tablet. Please take the headset off.",
+  "takeOff.form":
+    "The next questions are on the tablet. Stand still, close your eyes for a moment and lift the headset off.",
   "finished.title": "That is all, thank you",
   "finished.body": "You can take the headset off now. The experimenter helps you.",
   "stop.hold": "Hold to stop",
@@ -70,49 +73,60 @@ export const en = {
   "pause.telling": "The experimenter is being told.",
   "pause.untold": "The experimenter could not be told. Please call out loud.",
   "pause.operator.title": "A short break",
-  "pause.operator.body": "The experimenter has paused the session. You do not have to do anything.",
+  "pause.operator.body": "The session is paused. You do not have to do anything.",
   "pause.resume": "It goes on when the experimenter continues.",
   "comfort.title": "How are you?",
   "comfort.body":
     "If you feel dizzy or unwell, say so or stop. Stopping has no disadvantage for you.",
+  decimal: ".",
+  "boundary.area": "Your play area",
   "boundary.title": "Close to the edge",
   "boundary.body": "Please step back to the middle of the room.",
   "boundary.missing":
     "This headset has no play area set up. Please ask the experimenter to set one up before you move.",
   "boundary.small":
     "The play area is smaller than this study needs: {{haveM}} by {{haveDepthM}} m instead of {{needM}} by {{needDepthM}} m. Please tell the experimenter.",
-  "mirror.title": "Look into the mirror",
-  "mirror.body":
-    "Move your arms and legs slowly. Does the figure move as you do? The experimenter looks, too.",
-  "mirror.good": "It moves as I do",
-  "mirror.bad": "Something is wrong",
-  "mirror.repeat": "Then we measure once more.",
+  "steppingIn.title": "Step into the figure",
+  "steppingIn.body":
+    "Stand in the transparent figure with your arms stretched out like its arms. Then press both grips.",
+  "steppingIn.bodyHands":
+    "Stand in the transparent figure with your arms stretched out like its arms. Then make two fists.",
+  "ready.body": "The experimenter starts as soon as you are ready.",
+  "preparing.countdown": "Starts in {{seconds}} s",
+  "aloud.title": "Please answer aloud",
+  "aloud.body":
+    "The experimenter asks you the questions and writes down what you say. You can keep the headset on.",
+  "feet.body":
+    "This task cannot start: your feet are not measured at the moment. The experimenter has been told.",
+  "elsewhere.title": "Please look at the tablet",
+  "elsewhere.form": "The next questions are on the tablet. It goes on here afterwards.",
+  "elsewhere.body": "The next part is on the tablet. It goes on here afterwards.",
+  "boundary.goOn": "Go on like this",
+  "form.loading": "Your questions are being fetched",
   "calibration.step": "Step {{number}} of {{total}}",
-  "calibration.fit.title": "Sit the headset right",
-  "calibration.fit.body":
-    "Move the headset up and down until this text is sharp, then tighten the strap. If it stays blurred, adjust the distance of the lenses.",
-  "calibration.fit.sharp": "The text is sharp",
-  "calibration.square.title": "Step onto the square",
-  "calibration.square.body": "Stand on the square on the floor and look straight ahead.",
+  "calibration.square.title": "Stand still on the square",
+  "calibration.square.body":
+    "Look straight ahead. Is this text blurred? Then move the headset up or down until it is sharp.",
   "calibration.n_pose.title": "Stand upright, arms down",
   "calibration.n_pose.body":
     "Stand straight with your feet side by side. Let both arms hang. Look ahead and stay still for 2 seconds.",
   "calibration.t_pose.title": "Stretch your arms out to the sides",
   "calibration.t_pose.body":
     "Both arms straight, as high as your shoulders, palms down. Stay still for 2 seconds.",
-  "calibration.look_around.title": "Look around",
-  "calibration.look_around.body":
-    "Turn your head slowly: left, right, up and down, for ten seconds. Keep your feet where they are.",
-  "calibration.squat_reach.title": "Bend and reach",
-  "calibration.squat_reach.body":
-    "Bend your knees a little, come up again, then reach forward with both hands.",
-  "calibration.measuring": "Stay like that",
-  "calibration.moving": "Please keep still.",
-  "calibration.done.title": "Done",
-  "calibration.done.body": "Your body has been measured. Thank you.",
-  "calibration.again.title": "Once more, please",
-  "calibration.again.body":
-    "The {{part}} is {{errorCm}} cm away from where it should be. We repeat this step.",
+  "calibration.measuring": "Stay like that: {{seconds}}",
+  "calibration.squat.title": "Bend your knees, come up again",
+  "calibration.squat.body":
+    "Bend your knees a little, as if to sit down, then stand upright again and stay still.",
+  "calibration.reach.title": "Reach forward",
+  "calibration.reach.body": "Stretch both hands out in front of you, as high as your shoulders.",
+  "calibration.mirror.title": "Look into the mirror",
+  "calibration.mirror.body":
+    "Move your arms and legs slowly. Does the figure move as you do? If you press nothing, it goes on by itself.",
+  "calibration.mirror.good": "It moves as I do",
+  "calibration.mirror.bad": "Something is wrong",
+  "calibration.again": "Once more, please:",
+  "calibration.seconds": "{{seconds}} s",
+  "calibration.skip": "Leave this out",
   "problem.off_square.forward": "Please go {{distanceCm}} cm forward.",
   "problem.off_square.back": "Please go {{distanceCm}} cm back.",
   "problem.off_square.left": "Please go {{distanceCm}} cm to the left.",
@@ -135,8 +149,11 @@ export const en = {
     "The {{part}} is not seen at the moment. Please move so that nothing is in the way.",
   "problem.not_bent": "Please bend your knees a little more.",
   "problem.not_reached": "Please reach further forward.",
+  "problem.palms_not_down": "Please turn your palms to the floor.",
+  "problem.not_upright": "Please stand up straight again.",
+  "problem.goal_error": "The {{part}} was {{errorCm}} cm away from where it should be.",
   "problem.implausible":
-    "That does not fit: {{valueCm}} cm. Please stand upright and try again, or tell the experimenter.",
+    "That gives a height of {{valueCm}} cm. Please stand upright, or tell the experimenter that the headset's floor is wrong.",
   "part.Head": "head",
   "part.Hips": "waist",
   "part.LeftHand": "left hand",

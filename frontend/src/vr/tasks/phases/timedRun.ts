@@ -69,6 +69,11 @@ export abstract class TimedRun {
     return this.#frozenUntilS !== null;
   }
 
+  /** Seconds of the freeze that remain at `timeS`; null while nothing is frozen. */
+  freezeLeftS(timeS: number): number | null {
+    return this.#frozenUntilS === null ? null : Math.max(0, this.#frozenUntilS - timeS);
+  }
+
   /** Whether the clock waits for the operator to resume. */
   get isPaused(): boolean {
     return this.#isPaused;

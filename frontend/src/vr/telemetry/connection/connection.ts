@@ -195,12 +195,13 @@ export class Connection {
     if (refusal !== null) this.#fail(refusal);
     if (!channel.isOpen || this.#conversation !== null) return;
     this.epoch ??= welcome.epoch;
+    // First the state, then the positions that it includes, as always: `settled` means both.
+    this.#parts.hooks.onState(welcome.state);
     this.#parts.journal.acknowledge(welcome.positions);
     this.#conversation = new Conversation(channel, {
       ...this.#parts,
       onFailure: (failure) => this.#fail(failure),
     });
-    this.#parts.hooks.onState(welcome.state);
     this.#parts.hooks.onChange();
   }
 

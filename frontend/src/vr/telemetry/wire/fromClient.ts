@@ -120,6 +120,8 @@ const GoalsReport = v.strictObject({
 });
 
 const Metres = v.pipe(v.number(), v.finite(), v.minValue(-10), v.maxValue(10));
+/** As far as a body can be built for it. */
+const Stature = v.pipe(v.number(), v.finite(), v.minValue(0.5), v.maxValue(2.6));
 const Length = v.pipe(v.number(), v.finite(), v.minValue(0), v.maxValue(10));
 const Cosine = v.pipe(v.number(), v.finite(), v.minValue(-1.001), v.maxValue(1.001));
 
@@ -131,7 +133,7 @@ const CalibrationReport = v.strictObject({
   revision: v.nullable(Count),
   /** first, order, error or reset */
   cause: Name40,
-  stature_m: Length,
+  stature_m: Stature,
   span_m: v.nullable(Length),
   eye_height_m: v.nullable(Length),
   tracker_from_goal: v.record(
@@ -144,6 +146,19 @@ const CalibrationReport = v.strictObject({
   residuals_m: v.record(GoalKey, Length),
   sources: v.record(GoalKey, Name40),
   notices: v.pipe(v.array(Name40), v.maxLength(20)),
+  /** Measured lengths, by the names of an avatar's segments; left out if there are none. */
+  segments_m: v.optional(v.record(Name40, Length)),
+});
+
+/** How far a calibration is that is under way, for the operator to see. */
+const CalibrationStepReport = v.strictObject({
+  kind: v.literal("calibration_step"),
+  t_s: Seconds,
+  step: Name40,
+  number: Count,
+  total: Count,
+  /** What keeps the step from being done; null while nothing does. */
+  problem: v.nullable(Name40),
 });
 
 const Added = v.pipe(v.number(), v.finite(), v.minValue(0), v.maxValue(1));
@@ -172,6 +187,7 @@ const Body = v.variant("kind", [
   AvatarChangeReport,
   GoalsReport,
   CalibrationReport,
+  CalibrationStepReport,
   AddedLatencyReport,
   CallReport,
   PhaseReport,

@@ -81,6 +81,10 @@ const PanelOrder = v.object({
   headset_off: v.boolean(),
   held: v.boolean(),
   called: v.boolean(),
+  /** What the current step's task is done with; left out if it is no task. */
+  limb: v.optional(v.picklist(["hand", "foot"])),
+  /** The study's words for `freeze` and `walk_back`; an older server does not send them. */
+  screen_texts: v.optional(v.record(v.string(), v.string())),
 });
 export type PanelOrder = v.InferOutput<typeof PanelOrder>;
 

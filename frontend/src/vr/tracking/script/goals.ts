@@ -73,3 +73,22 @@ function edgeHeightM({ surfaces }: GoalContext): number {
   const sides = surfaces.filter(({ kind }) => kind === "side");
   return Math.max(0, ...sides.map((one) => one.centerM[1] + one.halfSizeM[1])) + STEP_CLEARANCE_M;
 }
+
+const STEP_EVERY_S = 1.1;
+const STEP_SIDE_M = 0.1;
+const STEP_AHEAD_M = 0.1;
+const STEP_HIGH_M = 0.22;
+
+/** The step on the spot that is due: left and right foot in turn, to and fro, knees high. */
+export function marchingStep(timeS: number): ScriptedGoal {
+  const count = Math.floor(timeS / STEP_EVERY_S);
+  const limb = count % 2 === 0 ? "left" : "right";
+  const ahead = count % 4 < 2 ? -STEP_AHEAD_M : STEP_AHEAD_M;
+  return {
+    kind: "step",
+    limb,
+    targetM: [limb === "left" ? -STEP_SIDE_M : STEP_SIDE_M, 0, ahead],
+    nearM: 0.03,
+    approachM: [0, STEP_HIGH_M, 0],
+  };
+}

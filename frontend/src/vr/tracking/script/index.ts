@@ -1,11 +1,5 @@
-export {
-  NO_OFFSETS,
-  usualOffsets,
-  WornDevices,
-  type WornOffsets,
-  type WornOptions,
-} from "./devices";
-export { type GoalSurface, goalOn } from "./goals";
+export { NO_OFFSETS, WornDevices, type WornOptions } from "./devices";
+export { type GoalSurface, goalOn, marchingStep } from "./goals";
 export type { ScriptedGoal, Traits } from "./movements";
 export { type ArmPose, type PersonOptions, type PersonSide, ScriptedPerson } from "./person";
 export { ScriptSource, type ScriptSourceOptions } from "./source";

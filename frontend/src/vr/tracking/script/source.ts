@@ -26,6 +26,8 @@ export interface ScriptSourceOptions {
   readonly worn?: WornOptions | null;
   readonly hasShins?: boolean;
   readonly hasWaist?: boolean;
+  /** What tracks a part, if not a controller in each hand and trackers elsewhere. */
+  readonly devices?: Partial<Readonly<Record<GoalPart, TrackingDevice>>>;
   /** Rotations of a hand's finger parts (60) at a time; without it no fingers are tracked. */
   readonly fingers?: ((side: "left" | "right", timeS: number) => Float64Array) | null;
 }
@@ -62,7 +64,7 @@ export class ScriptSource implements TrackingSource {
       set(
         frame.parts[part],
         devices.place(part),
-        this.knownBody === null ? DEVICES[part] : "joint",
+        this.knownBody === null ? (this.options.devices?.[part] ?? DEVICES[part]) : "joint",
       );
     }
     frame.eyes = this.knownBody === null ? frame.parts.Head.place : eyesOf(person);

@@ -5,7 +5,7 @@
 import type { Place } from "@shared/avatar/hips";
 import { deviceKeyOf } from "../devices";
 import { clear, frameBuffer } from "../frameBuffer";
-import { AT_ORIGIN } from "../places";
+import { AT_ORIGIN, composed } from "../places";
 import type { GoalPart, SourceKind, TrackedFrame, TrackingSource } from "../tracked";
 import { Room, type RoomListener } from "./room";
 import { XR_WAYS, XrSource, type XrWay } from "./source";
@@ -45,6 +45,11 @@ export class WebXrTracking implements TrackingSource {
   /** Where the start square lies in the room; null without a session. */
   get room(): Room | null {
     return this.currentRoom;
+  }
+
+  /** Move the start square to there, in the world as it is read now. */
+  moveSquare(worldFromSquare: Place): void {
+    this.currentRoom?.placeSquare(composed(this.currentRoom.roomFromSquare, worldFromSquare));
   }
 
   get kind(): SourceKind {

@@ -1,0 +1,1 @@
+"""The command `reembody avatar`: show, edit, compare, convert, save and load configurations."""

@@ -1,0 +1,1 @@
+"""The command `reembody crossing`: co-simulated scenes at a road."""

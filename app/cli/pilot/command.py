@@ -1,0 +1,98 @@
+"""Define `pilot power`, `merge` and `check`: parse options, run, print the results."""
+
+import json
+import os
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.errors import INCOMPLETE, reported
+from app.cli.progress import Activity
+
+pilot = typer.Typer(
+    help="Simulate a study before anybody takes part; all of it is marked simulated.",
+    no_args_is_help=True,
+)
+_Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+
+
+@pilot.command()
+def power(
+    study: Annotated[str, typer.Argument(help="Study file, or the name of a shipped one.")],
+    participants: Annotated[
+        list[str] | None,
+        typer.Option(help="How many start: 12, or 8,12,16; else around the planned number."),
+    ] = None,
+    assumptions: Annotated[
+        Path | None, typer.Option(help="File of assumptions; else the product's for the study.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of all random draws.")] = 1,
+    sets: Annotated[
+        int, typer.Option(help="Data sets for each number, with the effect and without.")
+    ] = 1000,
+    target: Annotated[float, typer.Option(help="The power that is wanted.")] = 0.8,
+    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
+    shard: Annotated[
+        str | None, typer.Option(help="Compute one part of several only, as in 2/3.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Record every finished part in this file, and continue it."),
+    ] = None,
+    as_json: _Json = False,
+) -> None:
+    """Simulate data sets, and count how often the preregistered test is significant."""
+    from app.cli.pilot import output as texts
+    from app.cli.pilot.inputs import read_counts, read_shard
+    from app.cli.pilot.run import PowerOrder, carry_out_power
+    from app.cli.pilot.run import as_json as json_of
+
+    with reported(ValueError, OSError), Activity(f"simulating {study}: reading it") as now:
+        order = PowerOrder(
+            study=study,
+            assumptions=assumptions,
+            participants=read_counts(participants or []),
+            seed=seed,
+            sets=sets,
+            target=target,
+            workers=workers,
+            shard=read_shard(shard),
+            out=out,
+        )
+        curve = carry_out_power(order, now.now)
+    print(json_of(curve) if as_json else texts.curve_text(curve))
+    own = os.times()
+    used_s = own.user + own.system + own.children_user + own.children_system
+    print(f"reembody: {used_s:.0f} s of processor time", file=sys.stderr)
+
+
+@pilot.command()
+def check(
+    study: Annotated[str, typer.Argument(help="Study file, or the name of a shipped one.")],
+    as_json: _Json = False,
+) -> None:
+    """Find what would break a study; the exit code is 1 if anything would."""
+    with reported(ValueError, OSError), Activity(f"checking {study}: reading it") as now:
+        from app.cli.pilot.check import carry_out_check, check_json, check_text
+
+        checked = carry_out_check(study, now.now)
+    print(json.dumps(check_json(checked), indent=2) if as_json else check_text(checked))
+    if checked.findings:
+        raise typer.Exit(INCOMPLETE)
+
+
+@pilot.command()
+def merge(
+    records: Annotated[list[Path], typer.Argument(help="Files that --out wrote.")],
+    as_json: _Json = False,
+) -> None:
+    """Put the parts of a simulation together, wherever they were computed."""
+    from app.cli.pilot import output as texts
+    from app.cli.pilot.run import as_json as json_of
+    from app.cli.pilot.run import carry_out_merge
+
+    with reported(ValueError, OSError):
+        curve = carry_out_merge(records)
+    print(json_of(curve) if as_json else texts.curve_text(curve))

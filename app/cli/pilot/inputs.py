@@ -1,0 +1,115 @@
+"""Read the inputs of `reembody pilot`: a study, its instruments, and what is assumed of people."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.protocol import (
+    ConfigError,
+    LoadedAssumptions,
+    LoadedInstrument,
+    LoadedStudy,
+    load_assumptions,
+    load_instrument,
+    load_study,
+)
+from app.resources import study_configs_dir
+from app.science.instruments import Instrument
+
+_COUNTS = re.compile(r"\d+(,\d+)*")
+_SHARD = re.compile(r"([1-9]\d*)/([1-9]\d*)")
+
+
+@dataclass(frozen=True)
+class StudyFile:
+    """A study file with the instruments that it asks."""
+
+    path: Path
+    study: LoadedStudy
+    instruments: dict[str, Instrument]
+
+
+def read_study(name: str) -> StudyFile:
+    """Read a study: a file, or the name of a shipped study or template.
+
+    Its instruments are the product's, and those of a folder `instruments` beside the file.
+
+    Raises ValueError with every problem of the file, OSError.
+    """
+    path = _study_path(name)
+    instruments = {
+        key: one.instrument
+        for folder in (study_configs_dir(), path.parent)
+        for key, one in _instruments(folder / "instruments").items()
+    }
+    try:
+        loaded = load_study(path.read_text(encoding="utf-8"), instruments=instruments)
+    except ConfigError as error:
+        raise _of_file(path, error) from error
+    return StudyFile(path, loaded, instruments)
+
+
+def read_assumptions(given: Path | None, study: StudyFile) -> LoadedAssumptions:
+    """Read the assumptions of a study: a file, or the one that the product has for its key.
+
+    Raises ValueError with every problem of the file, OSError.
+    """
+    protocol = study.study.protocol
+    path = given or study_configs_dir() / "assumptions" / f"{protocol.key}.yaml"
+    if given is None and not path.is_file():
+        raise ValueError(
+            f"nothing is known of how people would answer in {protocol.key!r}: write the "
+            "assumptions to a file, as docs/pilot.md describes, and give it with --assumptions"
+        )
+    try:
+        return load_assumptions(path.read_text(encoding="utf-8"), protocol, study.instruments)
+    except ConfigError as error:
+        raise _of_file(path, error) from error
+
+
+def read_counts(given: list[str]) -> tuple[int, ...]:
+    """Return the numbers of participants of options such as `12` and `8,12,16`."""
+    for one in given:
+        if not _COUNTS.fullmatch(one):
+            raise ValueError(f"--participants {one}: give numbers, as in 12 or 8,12,16")
+    return tuple(int(number) for one in given for number in one.split(","))
+
+
+def read_shard(given: str | None) -> tuple[int, int]:
+    """Return the number of this part, from 0, and of all parts of an option such as `2/3`."""
+    if given is None:
+        return 0, 1
+    found = _SHARD.fullmatch(given)
+    if found is None or int(found[1]) > int(found[2]):
+        raise ValueError(f"--shard {given}: give which part of how many, as in 1/3, 2/3 and 3/3")
+    return int(found[1]) - 1, int(found[2])
+
+
+def _study_path(name: str) -> Path:
+    root = study_configs_dir()
+    shipped = {
+        file.stem: file for file in (*root.glob("*.yaml"), *(root / "templates").glob("*.yaml"))
+    }
+    path = shipped.get(name, Path(name))
+    if not path.is_file():
+        raise ValueError(
+            f"there is no study {name!r}, and no such file; there are: {', '.join(sorted(shipped))}"
+        )
+    return path
+
+
+def _instruments(folder: Path) -> dict[str, LoadedInstrument]:
+    found = {}
+    for path in sorted(folder.glob("*.yaml")):
+        try:
+            found[path.stem] = load_instrument(path.read_text(encoding="utf-8"))
+        except ConfigError as error:
+            raise _of_file(path, error) from error
+    return found
+
+
+def _of_file(path: Path, error: ConfigError) -> ValueError:
+    """Name the file in front of its problems."""
+    lines = "\n".join(f"  {problem}" for problem in error.problems)
+    count = len(error.problems)
+    return ValueError(f"{path} has {count} problem{'s' if count > 1 else ''}:\n{lines}")

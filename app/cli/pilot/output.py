@@ -1,0 +1,59 @@
+"""Print a pilot as text: the curve, and every assumption that it rests on."""
+
+from collections.abc import Iterator
+
+from app.cli.pilot.run import Curve
+from app.science.pilot import PowerPoint, smallest_sufficient
+
+_COLUMNS = (
+    "     n  in test   power    95 % band       level    95 % band       type S  type M  failed"
+)
+
+
+def curve_text(curve: Curve) -> str:
+    """Describe a curve, with its assumptions below it."""
+    return "\n".join(_lines(curve))
+
+
+def _lines(curve: Curve) -> Iterator[str]:
+    header, test = curve.header, curve.header["test"]
+    measure = test["score"] or test["measure"]
+    kind = "preregistered test" if header["preregistered"] else "test that might be declared"
+    yield f"SIMULATED: the power of the {kind} of {header['study']}, if people are as assumed"
+    way, alpha = test["direction"], header["alpha"]
+    yield f"{test['test']} of {measure} ({test['limb']}), {way}, alpha {alpha:g}"
+    yield f"{header['sets']} data sets with the effect and as many without, seed {header['seed']}"
+    yield ""
+    yield _COLUMNS
+    yield from map(_row, curve.points)
+    if curve.unfinished:
+        yield f"{curve.unfinished} parts are not computed yet: run the other shards, and merge them"
+    yield ""
+    target = header["target"]
+    smallest = smallest_sufficient(curve.points, target)
+    planned = f"{header['planned_n']} are planned"
+    if smallest is None:
+        yield f"With none of these numbers does the lower bound reach {target:g}; {planned}."
+    else:
+        yield f"{smallest} is the smallest n whose lower bound reaches {target:g}; {planned}."
+    difference = header["assumed_difference"]
+    yield f"Assumed difference, longest against shortest latency: {difference:.3g} of {measure}."
+    yield ""
+    yield "Assumptions, none of them a finding:"
+    for one in header["assumptions"]:
+        value = one["value"]
+        shown = ", ".join(f"{x:g}" for x in value) if isinstance(value, list) else f"{value:g}"
+        yield f"  {one['name']}: {shown} {one['unit']} ({one['source']})"
+
+
+def _row(point: PowerPoint) -> str:
+    return (
+        f"{point.n:6d} {point.mean_in_test:8.1f}   {point.power:5.3f}   "
+        f"{point.low:.3f} to {point.high:.3f}   {point.level:5.3f}   "
+        f"{point.level_low:.3f} to {point.level_high:.3f}   {_or_dash(point.type_s)}  "
+        f"{_or_dash(point.type_m)}  {point.failures + point.level_failures:6d}"
+    )
+
+
+def _or_dash(value: float | None) -> str:
+    return f"{'-':>6}" if value is None else f"{value:6.3f}"

@@ -1,0 +1,127 @@
+"""What a pilot computes, in pieces that any process can compute alone and in any order.
+
+A chunk is some data sets of one number of participants, with the assumed effect or without it. Its
+random numbers depend on the seed and on what the chunk is, and on nothing else, so how chunks are
+shared out changes no number.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+
+from app.protocol import Preregistration, StudyProtocol, ledger_block, sequences
+from app.science.statistics import IntArray, StatisticsError
+
+CHUNK_SETS: Final = 50
+"""Data sets of a chunk; another number would change every result."""
+MOST_PARTICIPANTS, MOST_SETS = 1000, 100_000
+FEWEST_PARTICIPANTS = 2
+Scenario = Literal["effect", "null"]
+SCENARIOS: Final[tuple[Scenario, ...]] = ("effect", "null")
+
+
+class PilotError(ValueError):
+    """A pilot cannot be computed as asked; the message says why and what is valid."""
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Some of a pilot's data sets: `sets` of them, each with `n` participants."""
+
+    n: int
+    scenario: Scenario
+    index: int
+    sets: int
+
+    def rng(self, seed: int) -> np.random.Generator:
+        """Return the chunk's own random generator."""
+        spawned = (self.n, SCENARIOS.index(self.scenario), self.index)
+        return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=spawned))
+
+
+@dataclass(frozen=True)
+class PilotPlan:
+    """What is computed.
+
+    Attributes:
+        participants: numbers of people who start, ascending.
+        sets: data sets for each of them, as many with the effect as without.
+        seed: of all random numbers.
+    """
+
+    participants: tuple[int, ...]
+    sets: int
+    seed: int
+
+
+def make_plan(study: StudyProtocol, participants: Sequence[int], sets: int, seed: int) -> PilotPlan:
+    """Check what is asked; raises PilotError."""
+    wanted = tuple(sorted(set(participants)))
+    most = most_participants(study)
+    for n in wanted:
+        if not FEWEST_PARTICIPANTS <= n <= MOST_PARTICIPANTS:
+            raise PilotError(
+                f"{n} participants: {FEWEST_PARTICIPANTS} to {MOST_PARTICIPANTS} are valid"
+            )
+        if most is not None and n > most:
+            raise PilotError(
+                f"{n} participants: the study's ledger has {most} slots and is closed when they "
+                f"are taken. Ask for at most {most}, or raise orders.replicates or set "
+                "orders.when_full to grow in the study"
+            )
+    if not 1 <= sets <= MOST_SETS:
+        raise PilotError(
+            f"{sets} data sets: 1 to {MOST_SETS} are valid; 500 give bands of 4.5 points"
+        )
+    if seed < 0:
+        raise PilotError(f"a seed of {seed} is not possible; give 0 or a greater number")
+    return PilotPlan(wanted, sets, seed)
+
+
+def most_participants(study: StudyProtocol) -> int | None:
+    """Return how many people the study's ledger accepts; None if it grows."""
+    if study.orders.when_full == "grow":
+        return None
+    return study.orders.replicates * len(sequences(study))
+
+
+def chunks_of(plan: PilotPlan) -> Iterator[Chunk]:
+    """Yield every chunk of a plan, the fewest participants first."""
+    for n in plan.participants:
+        for scenario in SCENARIOS:
+            for index, start in enumerate(range(0, plan.sets, CHUNK_SETS)):
+                yield Chunk(n, scenario, index, min(CHUNK_SETS, plan.sets - start))
+
+
+def slots_of(study: StudyProtocol, n: int) -> IntArray:
+    """Return the first n slots of the study's own ledger: (n, k) numbers of conditions.
+
+    Conditions are numbered by ascending added latency.
+    """
+    keys = conditions_of(study)
+    blocks = -(-n // len(sequences(study)))
+    rows = [row.sequence for block in range(blocks) for row in ledger_block(study, block)]
+    return np.array([[keys.index(key) for key in row] for row in rows[:n]], dtype=np.int64)
+
+
+def conditions_of(study: StudyProtocol) -> tuple[str, ...]:
+    """Return the conditions by ascending added latency, as the primary test has them."""
+    return tuple(one.key for one in sorted(study.conditions, key=lambda one: one.latency_ms))
+
+
+def lowest_p(study: StudyProtocol, declared: Preregistration, n: int) -> float | None:
+    """Return the p of data in which everybody shows a huge effect; None if no p can be computed.
+
+    For tests on ranks it is the lowest p that n participants can give.
+    """
+    keys = conditions_of(study)
+    rising = np.arange(len(keys), dtype=np.float64)
+    # A share of the effect that differs between people, so that differences are not all the same.
+    shares = 100.0 + np.linspace(0.0, 1.0, n)[:, np.newaxis]
+    sign = -1.0 if declared.primary.direction == "falls" else 1.0
+    try:
+        return declared.outcome_of(sign * shares * rising, keys).p
+    except StatisticsError:
+        return None

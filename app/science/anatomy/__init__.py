@@ -1,0 +1,38 @@
+"""Check captured bodies against human anatomy: left and right, lengths, sides."""
+
+from app.science.anatomy.handedness import (
+    Handedness,
+    handedness_of,
+    mirrored_bodies,
+    mirrored_markers,
+    mirrored_skeleton,
+)
+from app.science.anatomy.lengths import (
+    PAIRED,
+    PUBLISHED,
+    length_notices,
+    plausible_m,
+    segment_lengths,
+    sides_agree,
+    stature_from,
+)
+from app.science.anatomy.notice import Notice, Rule, mirrored_notice, sentences
+
+__all__ = [
+    "PAIRED",
+    "PUBLISHED",
+    "Handedness",
+    "Notice",
+    "Rule",
+    "handedness_of",
+    "length_notices",
+    "mirrored_bodies",
+    "mirrored_markers",
+    "mirrored_notice",
+    "mirrored_skeleton",
+    "plausible_m",
+    "segment_lengths",
+    "sentences",
+    "sides_agree",
+    "stature_from",
+]

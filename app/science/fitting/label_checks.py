@@ -1,0 +1,97 @@
+"""Check by anatomy that markers are where their labels say: left and right, front and back.
+
+A fit cannot notice this by its residual: a mirrored person fits as well as a person. From the
+labels follow the pelvis' right (from LASI to RASI) and back (from the front markers to the rear
+ones), hence its up = back x right; from the body follow its up (from the knees to the pelvis) and
+its front (from heels or ankles to toes). In the median over the frames
+
+- the pelvis' up has to point away from the knees, else hip centres would lie above the pelvis;
+- toes have to point to the front = up x right;
+- the legs, and the shoulders, have to be in the order of the pelvis, left to right.
+
+If only the first two fail, left and right are mirrored, as from left-handed axes: the capture is
+mirrored back. Anything else is a wrong label, which cannot be mended without guessing.
+"""
+
+import numpy as np
+
+from app.science.anatomy import Notice, Rule, mirrored_notice
+from app.science.fitting.landmarks import Landmarks
+from app.science.rotations import FloatArray
+
+_NEEDED = ("LASI", "RASI", "LKNE", "RKNE", "LANK", "RANK")
+
+
+def label_notice(marks: Landmarks) -> Notice | None:
+    """Return what is wrong with the labels, None where nothing is or legs are not marked.
+
+    The notice is `mended` for mirrored labels, which the caller has to mirror back, else `refused`.
+    """
+    back = ("LPSI", "RPSI") if marks.has("LPSI", "RPSI") else ("SACR",)
+    if not marks.has(*_NEEDED, *back):
+        return None
+    right = marks["RASI"] - marks["LASI"]
+    front = marks.middle("LASI", "RASI")
+    pelvis = marks.middle("LASI", "RASI", *back)
+    up = pelvis - marks.middle("LKNE", "RKNE")
+    order = {"knees": _cosine(marks["RKNE"] - marks["LKNE"], right)}
+    if marks.has("LACR", "RACR"):
+        order["shoulders"] = _cosine(marks["RACR"] - marks["LACR"], right)
+    for part, cosine in order.items():
+        if cosine < 0.0:
+            return _refused(
+                f"Left and right of the {part} are swapped against the pelvis.",
+                f"the {part}' left-to-right is turned by {_degrees(cosine)} from the pelvis'",
+                "less than 90 degrees",
+                "Exchange the labels of left and right that are wrong, and export again.",
+            )
+    tilt = _cosine(np.cross(marks.middle(*back) - front, right), up)
+    toes = _toes_forward(marks, np.cross(up, right))
+    if tilt >= 0.0 and toes >= 0.0:
+        return None
+    if tilt < 0.0 and toes < 0.0:
+        return mirrored_notice(
+            f"the pelvis' up is {_degrees(tilt)} from the line from knees to pelvis",
+            "less than 90 degrees",
+        )
+    if tilt < 0.0:
+        return _refused(
+            "Front and back of the pelvis are swapped: the hip centres would lie above it.",
+            f"the pelvis' up is {_degrees(tilt)} from the line from knees to pelvis",
+            "less than 90 degrees",
+            "Exchange the labels of the front (ASI) and rear (PSI, SACR) markers.",
+        )
+    return _refused(
+        "The feet point backwards.",
+        f"toes point {_degrees(toes)} away from the body's front",
+        "less than 90 degrees",
+        "Exchange the labels of heels and toes.",
+        rule="mirrored",
+    )
+
+
+def _toes_forward(marks: Landmarks, front: FloatArray) -> float:
+    """Return the cosine between feet and front; 1 without toes, which then are no evidence."""
+    cosines = []
+    for letter in "LR":
+        toe = next((name for name in (f"{letter}TOE", f"{letter}MT5") if marks.has(name)), None)
+        if toe is not None:
+            heel = f"{letter}HEE" if marks.has(f"{letter}HEE") else f"{letter}ANK"
+            cosines.append(_cosine(marks[toe] - marks[heel], front))
+    return float(np.mean(cosines)) if cosines else 1.0
+
+
+def _cosine(a: FloatArray, b: FloatArray) -> float:
+    """Return the median cosine between two vectors over the frames that have both."""
+    sizes = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
+    cosines = np.einsum("ni,ni->n", a, b) / np.where(sizes > 0.0, sizes, np.nan)
+    cosines = cosines[np.isfinite(cosines)]
+    return float(np.median(cosines)) if len(cosines) else 1.0
+
+
+def _refused(what: str, value: str, valid: str, remedy: str, rule: Rule = "pelvis") -> Notice:
+    return Notice(rule, "refused", what, value, valid, remedy)
+
+
+def _degrees(cosine: float) -> str:
+    return f"{np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))):.0f} degrees"

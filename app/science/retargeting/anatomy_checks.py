@@ -1,0 +1,124 @@
+"""Check by anatomy a skeleton that a file contains, and the walk that comes of it.
+
+Skeletons of files are transferred by their joints' rotations, so their lengths matter only for
+scale: what does not fit is noted. Left and right do matter: a mirrored skeleton faces backwards,
+and its feet would swing from the wrong side of the ankle (step heights of 2.5 to 3.6 times the
+source's were seen). It is mirrored back.
+"""
+
+from app.science.anatomy import (
+    PUBLISHED,
+    Handedness,
+    Notice,
+    handedness_of,
+    length_notices,
+    mirrored_notice,
+    mirrored_skeleton,
+    segment_lengths,
+)
+from app.science.retargeting.joint_map import JointMap
+from app.science.retargeting.legs import has_ball, has_legs
+from app.science.rig import RigMotion
+
+_LOWEST_RATIO, _HIGHEST_RATIO = 0.5, 2.0
+_LOWEST_STEP_M = 0.02
+_LOWEST_STATURE_M, _HIGHEST_STATURE_M = 0.5, 2.6
+
+
+def checked_skeleton(
+    motion: RigMotion, joint_map: JointMap
+) -> tuple[RigMotion, tuple[Notice, ...]]:
+    """Return a file's movement with left and right as people have them, and notices on it."""
+    votes = _votes(motion, joint_map)
+    notices: list[Notice] = []
+    if votes.is_mirrored:
+        notices.append(mirrored_notice(_shares(votes), "more than 20 %"))
+        motion = mirrored_skeleton(motion)
+    rest, _ = motion.rig.rest_world()
+    places = {part: rest[motion.rig.index(name)] for part, name in joint_map.items()}
+    lengths = segment_lengths(places)
+    return motion, (*notices, *length_notices(lengths))
+
+
+def sides_notice(motion: RigMotion, joint_map: JointMap) -> Notice | None:
+    """Return a refusal if a map names the sides of a body the wrong way round."""
+    votes = _votes(motion, joint_map)
+    if not votes.is_mirrored:
+        return None
+    return Notice(
+        "mirrored",
+        "refused",
+        "The joint map exchanges left and right: the avatar would face backwards.",
+        _shares(votes),
+        "more than 20 %",
+        "Exchange left and right in the map.",
+    )
+
+
+def _votes(motion: RigMotion, joint_map: JointMap) -> Handedness:
+    positions, _ = motion.world()
+    places = {part: positions[:, motion.rig.index(name)] for part, name in joint_map.items()}
+    return handedness_of(places)
+
+
+def _shares(votes: Handedness) -> str:
+    shares = [f"{100.0 * share:.0f} % of the {kind}" for kind, share in votes.agreeing.items()]
+    return f"{', '.join(shares)} agree with the names of left and right"
+
+
+def toes_notice(motion: RigMotion, joint_map: JointMap) -> Notice | None:
+    """Return a notice if a body with legs has no toes, so that its ball is estimated."""
+    if not has_legs(joint_map) or has_ball(motion.rig, joint_map):
+        return None
+    return Notice(
+        "toes",
+        "mended",
+        "The feet have no toes: steps are measured where the ball of such a foot is.",
+        "no toe joint and no end of the foot, or at the ankle itself",
+        "a toe joint or an end on each foot, 2.5 % of the leg or farther from the ankle",
+        "Map the toes if the skeleton has them; a foot's own length is not known otherwise.",
+    )
+
+
+def stature_notice(leg_length_m: float | None) -> Notice | None:
+    """Return a notice if legs are so long or short that nobody has them: the unit may be wrong.
+
+    An avatar moves the same at any unit, since its travel is scaled by the legs; all figures of the
+    source are wrong.
+    """
+    if leg_length_m is None:
+        return None
+    stature_m = leg_length_m / (PUBLISHED["thigh"] + PUBLISHED["shank"])
+    if _LOWEST_STATURE_M <= stature_m <= _HIGHEST_STATURE_M:
+        return None
+    return Notice(
+        "length",
+        "noted",
+        "The person's size is not a human's: the file's unit of length may be wrong, and with it"
+        " every length and speed of the capture.",
+        f"legs of {leg_length_m:.3g} m, as of a stature of {stature_m:.3g} m",
+        f"a stature of {_LOWEST_STATURE_M} to {_HIGHEST_STATURE_M} m",
+        "Give the unit: --unit with metres per unit, or in the settings of the capture.",
+    )
+
+
+def step_height_notice(
+    source_m: float | None, avatar_m: float | None, leg_ratio: float
+) -> Notice | None:
+    """Return a refusal if mean step heights do not scale with the legs, None where they do.
+
+    Steps of less than 2 cm are shuffles, whose ratio means nothing.
+    """
+    if source_m is None or avatar_m is None or source_m < _LOWEST_STEP_M:
+        return None
+    ratio = avatar_m / source_m / leg_ratio
+    if _LOWEST_RATIO <= ratio <= _HIGHEST_RATIO:
+        return None
+    return Notice(
+        "step_height",
+        "refused",
+        "The avatar's steps do not have the person's height: joints are not where they are named.",
+        f"{avatar_m / source_m:.2f} times the source's height for {leg_ratio:.2f} times its legs",
+        f"{_LOWEST_RATIO * leg_ratio:.2f} to {_HIGHEST_RATIO * leg_ratio:.2f} times",
+        "Check which joints are mapped to feet and toes, and the capture's axes.",
+    )

@@ -1,0 +1,183 @@
+/** All versions of an avatar: their notes, how they differ from the work, loading, and files. */
+import { Button, FileButton } from "@mantine/core";
+import { dateTime } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useRef, useState } from "react";
+import { Link } from "wouter";
+import { nameOf } from "../account";
+import { useTexts } from "../i18n";
+import { Loaded } from "../ui/Loaded";
+import { type AvatarVersion, type AvatarView, avatars, type Operation, versionQuery } from "./api";
+import type { AvatarFile } from "./axes";
+import { Differences } from "./Differences";
+import classes from "./Editor.module.css";
+import { loadVersion } from "./operations";
+import { UsedBy } from "./UsedBy";
+
+interface VersionsPanelProps {
+  readonly avatar: AvatarView;
+  readonly basedOn: number;
+  /** The version that the address leads to: it is shown first, with how it differs. */
+  readonly linked: number | null;
+  /** Name a version in a study; undefined for people who write no studies. */
+  readonly onUse: ((version: number) => void) | undefined;
+  readonly configuration: AvatarFile;
+  readonly edit: (operations: readonly Operation[], label: string) => Promise<boolean>;
+  readonly onFile: (file: File) => void;
+  readonly isReadOnly: boolean;
+}
+
+export function VersionsPanel(props: VersionsPanelProps): JSX.Element {
+  const { avatar, basedOn, linked, onUse, configuration, edit, onFile, isReadOnly } = props;
+  const { t, language } = useTexts();
+  const [compared, setCompared] = useState<number | null>(linked === basedOn ? null : linked);
+  // A file that was corrected outside can be chosen again.
+  const forget = useRef<() => void>(null);
+  return (
+    <div className={classes.stack}>
+      <UsedBy avatarKey={avatar.key} version={linked ?? basedOn} />
+      <section className={classes.panel} aria-label={t("avatars.versions")}>
+        <h3 className={classes.sub}>{t("avatars.versions")}</h3>
+        <ul className={classes.list}>
+          {avatar.versions.map((version) => (
+            <li
+              key={version.number}
+              aria-current={version.number === linked || undefined}
+              ref={(line) => {
+                if (version.number === linked) line?.scrollIntoView({ block: "nearest" });
+              }}
+            >
+              <span className={classes.versionNumber}>{version.number}</span>
+              <span>
+                <strong>
+                  {version.note === "" ? t("avatars.noNote") : firstSentence(version)}
+                </strong>
+                <span className={classes.soft}>
+                  {t(`avatars.origin.${version.origin}`)} · {nameOf(version.by)} ·{" "}
+                  {dateTime(version.at, language)} ·{" "}
+                  <code title={version.content_hash}>{version.content_hash.slice(0, 12)}</code>
+                  {version.number === basedOn &&
+                    ` · ${t(isReadOnly ? "avatars.shown" : "avatars.basedOn")}`}
+                </span>
+              </span>
+              <span className={classes.buttons}>
+                {onUse !== undefined && (
+                  <Button
+                    size="compact-xs"
+                    variant="default"
+                    aria-label={t("avatars.use.version", { number: version.number })}
+                    onClick={() => onUse(version.number)}
+                  >
+                    {t("avatars.use")}
+                  </Button>
+                )}
+                <Button
+                  size="compact-xs"
+                  variant="default"
+                  aria-expanded={compared === version.number}
+                  onClick={() => setCompared(compared === version.number ? null : version.number)}
+                >
+                  {t("avatars.compare")}
+                </Button>
+                {isReadOnly ? (
+                  <Button
+                    component={Link}
+                    size="compact-xs"
+                    variant="default"
+                    aria-label={t("avatars.open.version", { number: version.number })}
+                    href={`/avatars/${avatar.key}/${version.number}`}
+                  >
+                    {t("avatars.open")}
+                  </Button>
+                ) : (
+                  <Button
+                    size="compact-xs"
+                    variant="default"
+                    onClick={() =>
+                      void edit(
+                        loadVersion(avatar.key, version.number),
+                        t("avatars.did.load", { number: version.number }),
+                      )
+                    }
+                  >
+                    {t("avatars.load")}
+                  </Button>
+                )}
+                <Button
+                  component="a"
+                  size="compact-xs"
+                  variant="default"
+                  href={avatars.fileUrl(avatar.key, version.number)}
+                  download
+                >
+                  {t("avatars.file")}
+                </Button>
+              </span>
+              {compared === version.number && (
+                <div className={classes.compared}>
+                  <Compared
+                    avatarKey={avatar.key}
+                    number={compared}
+                    configuration={configuration}
+                    work={
+                      isReadOnly ? t("avatars.version", { number: basedOn }) : t("avatars.yourWork")
+                    }
+                  />
+                </div>
+              )}
+            </li>
+          ))}
+        </ul>
+        {!isReadOnly && (
+          <FileButton
+            accept="application/json,.json"
+            resetRef={forget}
+            onChange={(file) => {
+              if (file !== null) onFile(file);
+              forget.current?.();
+            }}
+          >
+            {(button) => (
+              <Button
+                {...button}
+                size="xs"
+                variant="default"
+                className={classes.start ?? ""}
+                leftSection={<Icon name="upload" size={15} />}
+              >
+                {t("avatars.import")}
+              </Button>
+            )}
+          </FileButton>
+        )}
+      </section>
+    </div>
+  );
+}
+
+const firstSentence = ({ note }: AvatarVersion): string => note.split(/(?<=\.)\s/, 1)[0] ?? note;
+
+interface ComparedProps {
+  readonly avatarKey: string;
+  readonly number: number;
+  readonly configuration: AvatarFile;
+  /** What it is compared with. */
+  readonly work: string;
+}
+
+function Compared({ avatarKey, number, configuration, work }: ComparedProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Loaded query={useQuery(versionQuery(avatarKey, number))}>
+      {(version) => (
+        <Differences
+          label={t("avatars.compare")}
+          before={version.configuration}
+          after={configuration}
+          columns={[t("avatars.version", { number }), work]}
+        />
+      )}
+    </Loaded>
+  );
+}

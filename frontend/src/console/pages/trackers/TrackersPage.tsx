@@ -1,0 +1,93 @@
+/** Tracking software that sends to this server: doors, sources, and how to connect. */
+import { Title } from "@mantine/core";
+import type { Tracker, Trackers } from "@shared/api/trackers";
+import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
+import { useQuery } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { Link } from "wouter";
+import { type Key, useTexts } from "../../i18n";
+import { usePermissions } from "../../permissions";
+import { trackersQuery } from "../../queries";
+import { EmptyState } from "../../ui/EmptyState";
+import { Loaded } from "../../ui/Loaded";
+import { useTitle } from "../../ui/page";
+import { DoorCard } from "./DoorCard";
+import { HowToConnect } from "./HowToConnect";
+import { SourceSection } from "./SourceSection";
+import classes from "./Trackers.module.css";
+
+export function TrackersPage(): JSX.Element {
+  const { t } = useTexts();
+  useTitle(t("trackers.title"));
+  const query = useQuery(trackersQuery);
+  return (
+    <>
+      <Link href="/equipment" className={classes.crumbs ?? ""}>
+        <Icon name="back" size={16} />
+        {t("equipment.title")}
+      </Link>
+      <Title order={1}>{t("trackers.title")}</Title>
+      <p className={classes.lead}>{t("trackers.lead")}</p>
+      <Loaded query={query}>{(all) => <Parts all={all} />}</Loaded>
+    </>
+  );
+}
+
+function Parts({ all }: { readonly all: Trackers }): JSX.Element {
+  const { t } = useTexts();
+  const canOpen = usePermissions()("openDoor");
+  return (
+    <>
+      <section aria-labelledby="doors">
+        <Title order={2} id="doors">
+          {t("trackers.doors")}
+        </Title>
+        {!canOpen && <p className={classes.by}>{t("trackers.mayNot")}</p>}
+        <div className={classes.doors}>
+          {all.doors.map((door) => (
+            <DoorCard key={door.door} door={door} interfaces={all.interfaces} />
+          ))}
+        </div>
+      </section>
+      <section className={classes.sources} aria-labelledby="sources">
+        <Title order={2} id="sources">
+          {t("trackers.sources")}
+        </Title>
+        {all.turned_away > 0 && (
+          <Notice tone="warn" title={t("trackers.turnedAway", { count: all.turned_away })} />
+        )}
+        {wornTwice(all).map(([limb, own]) => (
+          <Notice key={limb} tone="warn" title={t("trackers.twice")}>
+            {t("trackers.twice.body", {
+              limb: t(`joint.${limb}` as Key),
+              trackers: own.map((one) => one.name).join(", "),
+            })}
+          </Notice>
+        ))}
+        {all.sources.length === 0 ? (
+          <EmptyState icon="plug" title={t("trackers.empty")}>
+            {t("trackers.empty.body")}
+          </EmptyState>
+        ) : (
+          all.sources.map((source) => (
+            <SourceSection
+              key={`${source.door} ${source.address} ${source.name}`}
+              source={source}
+              limbs={all.limbs}
+            />
+          ))
+        )}
+      </section>
+      <HowToConnect doors={all.doors} />
+    </>
+  );
+}
+
+/** The limbs on which more than one tracker is worn whose source is sending. */
+function wornTwice(all: Trackers): readonly (readonly [string, readonly Tracker[]])[] {
+  const worn = all.sources.filter((one) => !one.is_silent).flatMap((one) => one.trackers);
+  return all.limbs
+    .map((limb) => [limb, worn.filter((one) => one.limb === limb)] as const)
+    .filter(([, own]) => own.length > 1);
+}

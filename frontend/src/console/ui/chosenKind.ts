@@ -1,0 +1,52 @@
+/** Which kind of session a study's pages show: kept in the address, and from page to page. */
+import type { DataKind } from "@shared/api/types";
+import { useEffect } from "react";
+import { useLocation, useSearch } from "wouter";
+
+const KINDS: readonly string[] = ["people", "simulated", "test"] satisfies readonly DataKind[];
+
+/** Whether a text names a kind of data. */
+const isKind = (text: string | null): text is DataKind => text !== null && KINDS.includes(text);
+
+const nameOf = (studyKey: string): string => `reembody.kind.${studyKey}`;
+
+/**
+ * The kind that a study's pages show: the address's, else the one last shown in this browser tab,
+ * else participants.
+ */
+export function kindOf(studyKey: string, search: string): DataKind {
+  const given = new URLSearchParams(search).get("kind");
+  if (isKind(given)) return given;
+  const last = sessionStorage.getItem(nameOf(studyKey));
+  return isKind(last) ? last : "people";
+}
+
+/** Remember a kind for the study's other pages. */
+export function useRememberedKind(studyKey: string, kind: DataKind): void {
+  useEffect(() => sessionStorage.setItem(nameOf(studyKey), kind), [studyKey, kind]);
+}
+
+/** The chosen kind, and how to choose another. */
+export function useKind(studyKey: string): readonly [DataKind, (kind: DataKind) => void] {
+  const [place, navigate] = useLocation();
+  const kind = kindOf(studyKey, useSearch());
+  useOwnSearch();
+  useRememberedKind(studyKey, kind);
+  // Replace the address: going back leaves the page instead of undoing a choice.
+  return [kind, (next) => navigate(`${place}?kind=${next}`, { replace: true })];
+}
+
+/**
+ * Remove the page's search from the address when the page is left.
+ *
+ * It stands before the `#` of the page's route, so the next page would inherit it.
+ */
+export function useOwnSearch(): void {
+  useEffect(() => {
+    const own = window.location.hash;
+    return () => {
+      const { hash, pathname, search: left } = window.location;
+      if (hash !== own && left !== "") history.replaceState(null, "", pathname + hash);
+    };
+  }, []);
+}

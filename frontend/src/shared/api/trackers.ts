@@ -1,0 +1,20 @@
+/** Requests for the doors of tracking software and the sources behind them. */
+import { answer, server } from "./request";
+import type { components } from "./schema";
+
+type Schemas = components["schemas"];
+export type Trackers = Schemas["LiveView"];
+export type Door = Schemas["DoorView"];
+export type DoorWish = Schemas["DoorWish"];
+export type LimbWish = Schemas["LimbWish"];
+export type Source = Schemas["SourceView"];
+export type Tracker = Schemas["TrackerView"];
+
+export const trackers = {
+  get: () => answer<Trackers>(server.GET("/api/trackers")),
+  setDoor: (door: Door["door"], wish: DoorWish) =>
+    answer<Trackers>(
+      server.PUT("/api/trackers/doors/{door}", { params: { path: { door } }, body: wish }),
+    ),
+  setLimb: (wish: LimbWish) => answer<Trackers>(server.PUT("/api/trackers/limbs", { body: wish })),
+};

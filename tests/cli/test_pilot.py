@@ -1,0 +1,92 @@
+"""Tests of `reembody pilot power` and `pilot merge`: same bytes, resuming, refusals."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from app.cli.commands import app
+from tests.cli.invoked import Invoked
+
+_STUDY = "reembodiment-latency"
+_SMALL = ("--participants", "8,12", "--sets", "60", "--seed", "5", "--json")
+_COMMAND = Invoked("pilot")
+
+
+def _power(*more: object) -> str:
+    arguments = ["pilot", "power", _STUDY, *_SMALL, *map(str, more)]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
+def test_the_same_bytes_however_it_is_computed(tmp_path: Path) -> None:
+    """One process, two processes, and three shards that are merged print the same JSON."""
+    whole = _power()
+    assert _power("--workers", 2) == whole
+    records = [tmp_path / f"{part}.jsonl" for part in range(3)]
+    for (part, record), rest in zip(enumerate(records, start=1), (5, 5, 6), strict=True):
+        unfinished = json.loads(_power("--shard", f"{part}/3", "--out", record))["unfinished"]
+        assert unfinished == rest
+    merged = _COMMAND.run("merge", *records, "--json")
+    assert merged.stdout == whole
+    curve = json.loads(whole)
+    assert curve["simulated"] is True
+    assert [point["n"] for point in curve["power"]] == [8, 12]
+    assert all(point["low"] <= point["power"] <= point["high"] for point in curve["power"])
+    assert curve["assumptions"][0]["source"] == "assumed"
+
+
+def test_a_killed_run_resumes(tmp_path: Path) -> None:
+    """A record that ends in the middle of a line is continued, and ends with the same curve."""
+    record = tmp_path / "record.jsonl"
+    whole = _power("--out", record)
+    lines = record.read_text(encoding="utf-8").splitlines(keepends=True)
+    killed = "".join(lines[:4]) + lines[4][:40]
+    record.write_text(killed, encoding="utf-8")
+    assert _power("--out", record) == whole
+    assert record.read_text(encoding="utf-8") == "".join(lines)
+
+
+def test_the_text_marks_itself_and_states_assumptions() -> None:
+    """People read that it is simulated, what is assumed, and whether anybody preregistered it."""
+    result = _COMMAND.run("power", _STUDY, "--participants", "6", "--sets", "20")
+    assert result.stdout.startswith("SIMULATED: the power of the test that might be declared")
+    assert "answering.effects.latency_350: -1.2 logits (assumed)" in result.stdout
+    assert "processor time" in result.stderr
+    own = _COMMAND.run("power", "four-latencies-williams", "--participants", "6", "--sets", "20")
+    assert own.stdout.startswith("SIMULATED: the power of the preregistered test")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("power", "nothing"), "there are: four-latencies-williams"),
+        (("power", _STUDY, "--participants", "twelve"), "give numbers, as in 12 or 8,12,16"),
+        (("power", _STUDY, "--participants", "1"), "2 to 1000 are valid"),
+        (("power", _STUDY, "--sets", "0"), "1 to 100000 are valid"),
+        (("power", _STUDY, "--target", "80"), "a power between 0 and 1"),
+        (("power", _STUDY, "--shard", "4/3"), "1/3, 2/3 and 3/3"),
+        (("power", _STUDY, "--shard", "1/3"), "--shard needs --out"),
+        (("power", _STUDY, "--workers", "0"), "1 to 64 are valid"),
+        (("power", _STUDY, "--assumptions", "none.yaml"), "there is no file none.yaml in "),
+        (("power", "two-latencies-hand"), "docs/pilot.md"),
+    ],
+)
+def test_unusable_input_is_refused(arguments: tuple[str, ...], said: str) -> None:
+    """What cannot be computed is refused, with what is valid or what to do."""
+    assert said in _COMMAND.refusal(*arguments)
+
+
+def test_records_of_different_pilots_are_not_mixed(tmp_path: Path) -> None:
+    """A record of another seed is refused by name, to resume and to merge; so is no record."""
+    first, second = tmp_path / "first.jsonl", tmp_path / "second.jsonl"
+    small = ("--participants", "4", "--sets", "5")
+    for seed, record in ((1, first), (2, second)):
+        _COMMAND.run("power", _STUDY, *small, "--seed", seed, "--out", record)
+    assert "differs in assumed_difference, seed" in _COMMAND.refusal("merge", first, second)
+    again = _COMMAND.refusal("power", _STUDY, *small, "--seed", 1, "--out", second)
+    assert "seed" in again
+    (tmp_path / "text.jsonl").write_text("hello\n", encoding="utf-8")
+    assert "no record of a pilot" in _COMMAND.refusal("merge", tmp_path / "text.jsonl")

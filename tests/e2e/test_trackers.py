@@ -1,0 +1,116 @@
+"""Browser test of the page Trackers: real senders, seen, judged, put on limbs, switched off."""
+
+import json
+import socket
+from collections.abc import Callable
+
+from playwright.sync_api import Page, expect
+
+from tests.adapters.live.packets import bundle, vmc
+from tests.e2e.lab_people import make_account
+from tests.e2e.people import PATIENCE_MS, Experimenter
+from tests.features.lab import ok
+from tests.support.datagrams import HERE, free_udp_port, sending
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+NAMES = ("Waist", "LeftFoot", "RightFoot")
+BONES = ("Hips", "LeftUpperLeg", "RightUpperLeg", "LeftLowerLeg", "RightLowerLeg")
+
+
+def scripted(number: int) -> bytes:
+    """Return a packet of a script that loses every tenth packet and doubles none."""
+    pose = {"position_m": [0.1, 0.08, -0.2], "rotation_wxyz": [1, 0, 0, 0]}
+    frame = number + number // 10
+    return json.dumps(
+        {"source": "shoe script", "time_s": number / 50, "frame": frame, "trackers": {"shoe": pose}}
+    ).encode()
+
+
+def test_trackers_arrive_are_judged_and_are_put_on_limbs(
+    live_server: LiveServer,
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], object],
+) -> None:
+    """Closed at first; doors are opened, two senders arrive, fall silent, and are forgotten.
+
+    A door whose port is taken says so and opens when it is free; an operator opens none.
+    """
+    page = page_factory()
+    experimenter = Experimenter(page, live_server.url)
+    experimenter.log_in()
+    page.goto(f"{live_server.url}/#/equipment")
+    page.get_by_role("link", name="Trackers of other software").click()
+    expect(page.get_by_role("heading", name="Nothing has arrived yet")).to_be_visible()
+    expect(page.get_by_text("Closed", exact=True)).to_have_count(3)
+    assert axe(page) == []
+    screenshot(page, "trackers-empty")
+
+    taken = page.get_by_role("region", name="Scripts")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as busy:
+        busy.bind((HERE, 0))
+        port = busy.getsockname()[1]
+        taken.get_by_label("Port").fill(str(port))
+        taken.get_by_role("button", name="Open the door Scripts").click()
+        expect(taken.get_by_text(f"has port {port}")).to_be_visible()
+        expect(taken.get_by_text("Cannot open")).to_be_visible()
+        assert axe(page) == []
+        screenshot(page, "trackers-taken")
+    expect(taken.get_by_text("Open", exact=True)).to_be_visible(timeout=PATIENCE_MS)
+    taken.get_by_role("button", name="Close the door Scripts").click()
+
+    ports = {"VMC and VRChat": free_udp_port(), "Scripts": free_udp_port()}
+    for name, port in ports.items():
+        door = page.get_by_role("region", name=name)
+        door.get_by_label("Port").fill(str(port))
+        door.get_by_role("button", name=f"Open the door {name}").press("Enter")
+        expect(door.get_by_text(f"{HERE}:{port}", exact=True)).to_be_visible()
+
+    def skeleton(_: int) -> bytes:
+        bones = [vmc(one, what="Bone") for one in BONES]
+        return bundle(*[vmc(one) for one in NAMES], *bones)
+
+    with sending(ports["VMC and VRChat"], skeleton), sending(ports["Scripts"], scripted):
+        suit = page.get_by_role("region", name=f"{HERE} {HERE}:")
+        shoe = page.get_by_role("region", name="shoe script")
+        expect(suit.get_by_role("row")).to_have_count(1 + len(NAMES), timeout=PATIENCE_MS)
+        expect(shoe.get_by_role("row").nth(1)).to_contain_text("0.08")
+        expect(shoe.get_by_text("±")).to_be_visible(timeout=PATIENCE_MS)
+        suit.get_by_label("Limb of LeftFoot").select_option("Left foot")
+        expect(suit.get_by_label("Limb of LeftFoot")).to_have_value("LeftFoot")
+        shoe.get_by_label("Limb of shoe").select_option("Left foot")
+        expect(page.get_by_text("Two trackers are on the same limb")).to_be_visible()
+        shoe.get_by_label("Limb of shoe").select_option("Right foot")
+        expect(page.get_by_text("Two trackers are on the same limb")).to_be_hidden()
+        suit.get_by_text("5 bones").click()
+        expect(suit.get_by_role("row")).to_have_count(2 + len(NAMES) + len(BONES))
+        assert axe(page) == []
+        page.mouse.wheel(0, -9000)
+        screenshot(page, "trackers")
+    expect(page.get_by_text("Silent for")).to_have_count(2, timeout=PATIENCE_MS)
+
+    for scheme, size, name in (("dark", (1280, 800), "dark"), ("dark", (1180, 820), "1180")):
+        other = page_factory(size, color_scheme=scheme)
+        Experimenter(other, live_server.url).log_in()
+        other.goto(f"{live_server.url}/#/trackers")
+        expect(other.get_by_text("Silent for")).to_have_count(2)
+        assert axe(other) == []
+        screenshot(other, f"trackers-{name}")
+
+    operator = page_factory((1180, 820))
+    with live_server.client() as admin:
+        ok(admin.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
+        invited = ok(admin.post("/api/invitations", json={"role": "operator"}))
+    make_account(operator, invited["url"], "otto")
+    operator.goto(f"{live_server.url}/#/trackers")
+    expect(operator.get_by_text("opened and closed by admins")).to_be_visible()
+    expect(operator.get_by_role("button", name="the door")).to_have_count(0)
+    expect(operator.get_by_label("Limb of LeftFoot")).to_be_enabled()
+    assert axe(operator) == []
+    screenshot(operator, "trackers-operator")
+
+    for name in ports:
+        page.get_by_role("button", name=f"Close the door {name}").click()
+    expect(page.get_by_role("heading", name="Nothing has arrived yet")).to_be_visible()
+    page.goto(f"{live_server.url}/#/people/audit")
+    expect(page.get_by_text("closed the door Scripts for trackers")).to_have_count(2)

@@ -1,0 +1,1 @@
+"""Tests of tunings as jobs of the server."""
