@@ -12,9 +12,9 @@ from app.models.types import UtcTime
 class HumanoidRow(Base):
     """A humanoid model by the SHA-256 of its file.
 
-    Configurations refer to it, so it is never deleted. `figure` is its measures and convex pieces
-    as canonical JSON (`app.protocol.humanoid`); the other columns repeat the values that lists
-    show. `bones_by` is how its bones were mapped to body parts.
+    Deleted only while it has no name and no configuration or tuning refers to it. `figure` is its
+    measures and convex pieces as canonical JSON (`app.protocol.humanoid`); the other columns repeat
+    the values that lists show. `bones_by` is how its bones were mapped to body parts.
 
     `name`: how studies refer to it, unique and never changed once given. `licence`: what its file
     says of its author and terms, `confirmed`: the terms that somebody has confirmed to be met

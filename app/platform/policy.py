@@ -111,6 +111,7 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/humanoids/{content_hash}": LAB,
     "GET /api/humanoids/{content_hash}/binding": LAB,
     "PATCH /api/humanoids/{content_hash}": DESIGNERS,
+    "DELETE /api/humanoids/{content_hash}": DESIGNERS,
     "POST /api/humanoids/{content_hash}/measure": DESIGNERS,
     "GET /api/humanoids/{content_hash}/use": LAB,
     "GET /api/humanoids/{content_hash}/file": LAB,

@@ -9,7 +9,8 @@ of one thread, medians over the chunks. Every decoded chunk is compared with its
 
 The part `fingers` compares the bytes of a finger part with those of a body's joint, both streams
 together: generated hands that make a fist, pinch, oppose the thumb or do all in turn, next to the
-synthetic body, tracked with the same noise and followed likewise.
+synthetic body, tracked with the same noise and followed likewise. Where there is noise, its own
+entropy is given as well, below which no lossless encoding can get.
 """
 
 import sys
@@ -189,12 +190,34 @@ def _by_joint(ours: Codec) -> Iterator[Figure]:
             name = f"{gesture or 'gestures in turn'} (generated), {tracked}"
             found = _bytes_a_joint(ours, streams, FINGER_COUNT)
             yield Figure("fingers", name, found, "B/joint/frame", "limit", body)
+            if noise_deg > 0.0:
+                least = (
+                    _noise_bytes(streams.target, noise_deg) + _noise_bytes(streams.actual, own_deg)
+                ) / 2.0
+                yield Figure("fingers", f"{name}: the noise alone", least, "B/joint/frame")
 
 
 def _bytes_a_joint(ours: Codec, streams: Streams, joints: int) -> float:
     pairs = list(streams.chunks())
     size = sum(len(ours.encode(one)) for pair in pairs for one in pair)
     return size / (len(pairs) * 2 * CHUNK_FRAMES * joints)
+
+
+def _noise_bytes(rotations: NDArray[np.float32], noise_deg: float) -> float:
+    """Return the entropy of the noise of `noisy` in rotations (n, 4 J), in bytes for each of them.
+
+    No lossless encoding takes less on average, not even one that knows the movement: the three
+    smaller components of a unit quaternion have independent normal noise, rounded to floats, and
+    the largest one follows from them.
+    """
+    quaternions = np.abs(rotations.reshape(-1, 4))
+    quaternions.sort(axis=1)
+    steps = np.spacing(quaternions[:, :3]).astype(np.float64)
+    deviation = np.radians(noise_deg) / 2.0
+    each_bits = np.log2(deviation * np.sqrt(2.0 * np.pi * np.e)) - np.log2(steps)
+    # The noise is perpendicular to the quaternion; this is the part of it across the largest one.
+    seen_bits = np.log2(quaternions[:, 3].astype(np.float64))
+    return float(np.mean(each_bits.sum(axis=1) + seen_bits)) / 8.0
 
 
 def _with_values(columns: Columns, values: NDArray[np.float32]) -> Columns:

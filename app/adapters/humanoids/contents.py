@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from app.adapters.humanoids.accessors import Tables
 from app.adapters.humanoids.container import HumanoidFileError
-from app.adapters.humanoids.document import Document, Primitive
+from app.adapters.humanoids.document import Document, Image, Primitive
 
 Bytes = bytes | memoryview
 _TRIANGLES, _STRIPS_AND_FANS = 4, (5, 6)
@@ -117,12 +117,18 @@ def _textures(document: Document, tables: Tables) -> list[Texture]:
     for number, image in enumerate(document.images):
         try:
             data = tables.image(image, f"images.{number}")
-        except HumanoidFileError:
-            data = memoryview(b"")
+            problem = ""
+        except HumanoidFileError as error:
+            # Without its other file the skin would silently be drawn without this texture.
+            data, problem = memoryview(b""), error.reason if _is_elsewhere(image) else ""
         media_type, width, height = size_of_image(data)
-        problem = _problem(data, media_type, width, height)
+        problem = problem or _problem(data, media_type, width, height)
         found.append(Texture(media_type, width, height, len(data), problem))
     return found
+
+
+def _is_elsewhere(image: Image) -> bool:
+    return image.bufferView is None and not (image.uri or "data:").startswith("data:")
 
 
 def _problem(data: Bytes, media_type: str, width: int, height: int) -> str:

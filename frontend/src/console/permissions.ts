@@ -66,6 +66,7 @@ export const RULES = {
     routes: [
       "POST /api/humanoids",
       "PATCH /api/humanoids/{content_hash}",
+      "DELETE /api/humanoids/{content_hash}",
       "POST /api/humanoids/{content_hash}/measure",
       "POST /api/avatars",
       "POST /api/avatars/edit",

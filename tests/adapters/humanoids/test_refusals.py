@@ -254,6 +254,17 @@ def test_pictures_that_cannot_be_drawn_are_refused(
     assert read_humanoid(data, check_pictures=False).humanoid.parts
 
 
+def test_a_model_whose_picture_is_in_another_file_is_refused() -> None:
+    """A texture that is not in the file would be missing in silence, so the model is refused."""
+
+    def edit(document: dict[str, Any]) -> None:
+        document["images"] = [{"uri": "skin.png"}]
+
+    error = rejected(humanoid_file(Model(edit=edit)))
+    assert error.place == "images.0"
+    assert "needs another one, 'skin.png'. Export the model as one file" in error.reason
+
+
 def test_pictures_within_the_limits_are_read() -> None:
     """Two pictures of the largest side are read, as is a KTX2 picture."""
     read = read_humanoid(with_pictures(png(8192, 8192), png(8192, 8192), ktx2(512)))

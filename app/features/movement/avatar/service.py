@@ -374,6 +374,10 @@ def _append(
     *,
     report: Mapping[str, Any] | None = None,
 ) -> AvatarVersion:
+    humanoid = content.configuration.humanoid
+    if humanoid is not None:
+        # Whoever deletes a body waits for this lock, and finds the configuration then.
+        humanoid_by_hash(db, humanoid, lock=True)
     row = AvatarVersion(
         key=key,
         number=number,

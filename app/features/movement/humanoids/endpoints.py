@@ -8,6 +8,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.features.movement.files import BODY, BYTES, FileName, attachment, binary, sent
 from app.features.movement.humanoids.naming import change_body
+from app.features.movement.humanoids.removal import remove_body
 from app.features.movement.humanoids.schemas import (
     BindingView,
     BodyChange,
@@ -77,6 +78,14 @@ def patch_humanoid(
     """Name a body, which is possible only once, set its title, or confirm terms of its licence."""
     change_body(db, caller.actor, content_hash, change, context.clock.utc_now())
     return humanoid_view(db, content_hash)
+
+
+@router.delete("/{content_hash}", status_code=204)
+def delete_humanoid(
+    content_hash: ContentHash, db: Writing, context: Context, caller: SignedIn
+) -> None:
+    """Delete a body that has no name and that no configuration or tuning uses, and its file."""
+    remove_body(db, caller.actor, content_hash, context.clock.utc_now())
 
 
 @router.post("/{content_hash}/measure")

@@ -67,7 +67,7 @@ def _confirm(db: Session, actor: str, row: HumanoidRow, terms: list[Term], now: 
     if not new:
         return
     row.confirmed = confirmed_with(row, new, actor, now.isoformat())
-    _record(db, actor, "humanoid.confirmed", row, {"terms": list(new)}, now)
+    _record(db, actor, row, now, {"terms": list(new)}, action="humanoid.confirmed")
 
 
 def _give_name(db: Session, actor: str, row: HumanoidRow, name: str, now: datetime) -> None:
@@ -104,21 +104,22 @@ def _give_name(db: Session, actor: str, row: HumanoidRow, name: str, now: dateti
         )
     require_confirmed(row)
     row.name = name
-    _record(db, actor, "humanoid.named", row, {"name": name}, now)
+    _record(db, actor, row, now, {"name": name}, action="humanoid.named")
 
 
 def _give_title(db: Session, actor: str, row: HumanoidRow, title: BodyTitle, now: datetime) -> None:
     row.title = title
-    _record(db, actor, "humanoid.titled", row, {}, now)
+    _record(db, actor, row, now, {}, action="humanoid.titled")
 
 
 def _record(
     db: Session,
     actor: str,
-    action: str,
     row: HumanoidRow,
-    details: dict[str, object],
     now: datetime,
+    details: dict[str, object],
+    *,
+    action: str,
 ) -> None:
     record(
         db,

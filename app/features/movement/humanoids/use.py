@@ -21,14 +21,15 @@ def use_of(db: Session, caller: Caller, content_hash: str) -> BodyUse:
     Raises NotFound if there is no such body.
     """
     row = humanoid_by_hash(db, content_hash)
-    configurations = list(_configurations(db, content_hash))
+    configurations = list(configurations_with(db, content_hash))
     worn = {(one.key, one.version) for one in configurations}
     return BodyUse(
         configurations=configurations, studies=list(_studies(db, caller, row.name, worn))
     )
 
 
-def _configurations(db: Session, content_hash: str) -> Iterator[ConfigurationUse]:
+def configurations_with(db: Session, content_hash: str) -> Iterator[ConfigurationUse]:
+    """Yield every version of a configuration that has a body."""
     # The hash is in the text of a configuration only as the value of `humanoid`.
     query = (
         select(AvatarVersion.key, Avatar.title, AvatarVersion.number)

@@ -71,7 +71,8 @@ def order_tuning(db: Session, context: AppContext, caller: Caller, request: NewT
     """
     named, configuration = _asked_configuration(db, request)
     if configuration.humanoid is not None:
-        figure = parsed_figure(humanoid_by_hash(db, configuration.humanoid).figure)
+        body = humanoid_by_hash(db, configuration.humanoid, lock=True)
+        figure = parsed_figure(body.figure)
         configuration = without_parts(configuration, frozenset(figure.absent))
     _require_known(configuration, request.options)
     stored = request.options.model_dump(mode="json")

@@ -15,6 +15,7 @@ import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import classes from "./Bodies.module.css";
 import { Checks } from "./Checks";
+import { DeleteBody } from "./DeleteBody";
 import { Licence } from "./Licence";
 import { NameCard } from "./NameCard";
 import { titleOf } from "./names";
@@ -48,16 +49,21 @@ function Body({ body }: { readonly body: BodyView }): JSX.Element {
           </Title>
           <Facts body={body} />
         </div>
-        <Button
-          component="a"
-          href={bodies.fileUrl(body.content_hash)}
-          download={body.file_name}
-          variant="default"
-          size="xs"
-          leftSection={<Icon name="download" size={15} />}
-        >
-          {t("bodies.file")}
-        </Button>
+        <div className={classes.row}>
+          <Button
+            component="a"
+            href={bodies.fileUrl(body.content_hash)}
+            download={body.file_name}
+            variant="default"
+            size="xs"
+            leftSection={<Icon name="download" size={15} />}
+          >
+            {t("bodies.file")}
+          </Button>
+          {canWrite && body.name === null && body.origin !== "shipped" && (
+            <DeleteBody body={body} />
+          )}
+        </div>
       </div>
       <div className={classes.body}>
         <div className={classes.column}>

@@ -20,6 +20,9 @@ export const bodiesEn = {
   "bodies.stature": "{{value}} cm tall",
   "bodies.triangles": "{{count}} triangles",
   "bodies.file": "Download the model",
+  "bodies.delete.title": "Delete this body?",
+  "bodies.delete.words":
+    "{{name}} and its file are deleted permanently. Nothing refers to a body without a name, unless an avatar configuration or a tuning uses it; then it stays.",
   "bodies.checks": "Checks",
   "bodies.status.good": "in order",
   "bodies.status.note": "note",
@@ -213,6 +216,9 @@ export const bodiesDe: Readonly<Record<keyof typeof bodiesEn, string>> = {
   "bodies.stature": "{{value}} cm groß",
   "bodies.triangles": "{{count}} Dreiecke",
   "bodies.file": "Modell herunterladen",
+  "bodies.delete.title": "Diesen Körper löschen?",
+  "bodies.delete.words":
+    "{{name}} und die Datei werden endgültig gelöscht. Auf einen Körper ohne Namen verweist nichts, es sei denn, eine Avatar-Konfiguration oder ein Einstellen der Motoren verwendet ihn; dann bleibt er.",
   "bodies.checks": "Prüfungen",
   "bodies.status.good": "in Ordnung",
   "bodies.status.note": "Hinweis",

@@ -36,6 +36,8 @@ export const bodies = {
         body: { confirmed: [], ...change },
       }),
     ),
+  remove: (hash: string) =>
+    answer<undefined>(server.DELETE("/api/humanoids/{content_hash}", at(hash))),
   measure: (hash: string) =>
     answer<BodyView>(server.POST("/api/humanoids/{content_hash}/measure", at(hash))),
   upload: (file: File, onSent: (share: number) => void) =>

@@ -909,7 +909,11 @@ export interface paths {
         readonly get: operations["get_humanoid_api_humanoids__content_hash__get"];
         readonly put?: never;
         readonly post?: never;
-        readonly delete?: never;
+        /**
+         * Delete Humanoid
+         * @description Delete a body that has no name and that no configuration or tuning uses, and its file.
+         */
+        readonly delete: operations["delete_humanoid_api_humanoids__content_hash__delete"];
         readonly options?: never;
         readonly head?: never;
         /**
@@ -13806,6 +13810,44 @@ export interface operations {
                 content: {
                     readonly "application/json": components["schemas"]["HumanoidView"];
                 };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_humanoid_api_humanoids__content_hash__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly content_hash: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {

@@ -207,3 +207,39 @@ def test_a_stored_model_has_a_binding(fresh_lab: Lab) -> None:
     assert (view["stature_m"], view["joints_m"]) == (own.stature_m, own.joints_m.tolist())
     assert view["part_from_node"] == own.part_from_node.reshape(-1, 16).tolist()
     error(analyst.get(f"{PATH}/{HASH}/binding"), 404, "not_found")
+
+
+def test_a_body_that_nothing_refers_to_is_deleted_with_its_file(fresh_lab: Lab) -> None:
+    """An uploaded body without a name is deleted with its file, and can be uploaded again."""
+    before = counted(fresh_lab)
+    upload(fresh_lab)
+    assert fresh_lab.operator.delete(f"{PATH}/{HASH}").status_code == 204
+    assert counted(fresh_lab) == before
+    error(fresh_lab.operator.get(f"{PATH}/{HASH}/file"), 404, "not_found")
+    error(fresh_lab.operator.delete(f"{PATH}/{HASH}"), 404, "not_found")
+    newest = ok(fresh_lab.operator.get("/api/audit"))["entries"][0]
+    assert (newest["action"], newest["details"]) == ("humanoid.removed", {"content": HASH[:12]})
+    assert upload(fresh_lab).status_code == 201
+
+
+def test_a_body_that_something_refers_to_stays(fresh_lab: Lab) -> None:
+    """Shipped bodies, named ones, and those of a configuration or a tuning are not deleted."""
+
+    def refused(content_hash: str = HASH) -> str:
+        answer = fresh_lab.operator.delete(f"{PATH}/{content_hash}")
+        message: str = error(answer, 409, "conflict")["message"]
+        return message
+
+    shipped = ok(fresh_lab.operator.get(PATH))["humanoids"][0]["content_hash"]
+    assert "comes with Reembody" in refused(shipped)
+    upload(fresh_lab)
+    worn = replace(SHIPPED, humanoid=HASH)
+    asked = {"configuration": as_json(worn), "options": {"axes": ["NeckX"]}}
+    tuning = ok(fresh_lab.operator.post("/api/avatar-tunings", json=asked))["id"]
+    assert "a tuning of an avatar uses" in refused()
+    fresh_lab.operator.post(f"/api/avatar-tunings/{tuning}/stop")
+    new(fresh_lab, "worn", worn)
+    assert "use this body: worn, version 1" in refused()
+    ok(fresh_lab.operator.patch(f"{PATH}/{HASH}", json={"name": "tall"}))
+    assert "called 'tall'" in refused()
+    assert ok(fresh_lab.operator.get(f"{PATH}/{HASH}"))["name"] == "tall"
