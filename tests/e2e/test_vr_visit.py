@@ -11,7 +11,7 @@ from tests.features.record.headset.site import Site
 from tests.protocol.helpers import SHIPPED, loaded
 from tests.support.browser import ContextFactory
 from tests.support.vr_rules import derived, stored
-from tests.support.vr_visit import QUICK, begun, journey_script, ok
+from tests.support.vr_visit import QUICK, SPAN_BY_STATURE, begun, journey_script, ok
 
 STUDY = "headset-visit"
 GOALS_WITHOUT_A_WAIST, MOST_ERROR_CM = 5, 3.0
@@ -63,6 +63,7 @@ def test_a_visit_from_pairing_to_debriefing(
     measured = view["calibration"]
     assert (measured["cause"], measured["notices"]) == ("first", ["waist_inferred"])
     assert abs(measured["stature_m"] - visit.person.stature_m) < 0.01
+    assert abs(measured["span_m"] - SPAN_BY_STATURE * visit.person.stature_m) < 0.02
     assert len(measured["residuals_cm"]) == GOALS_WITHOUT_A_WAIST
     assert max(measured["residuals_cm"].values()) <= MOST_ERROR_CM
     receipt = ok(operator.get(f"/api/sessions/{visit.session_id}/receipt"))

@@ -20,7 +20,12 @@ from app.features.movement.avatar import (
     configuration_by_hash,
     newest_version,
 )
-from app.features.movement.humanoids import body_by_name, figure_by_hash, named_bodies
+from app.features.movement.humanoids import (
+    body_by_name,
+    figure_by_hash,
+    humanoid_by_hash,
+    named_bodies,
+)
 from app.features.record.sessions import (
     AVATAR,
     RUNS,
@@ -48,8 +53,8 @@ class AvatarWish(BaseModel):
     """A request for a physics avatar: the participant's stature and any other lengths measured.
 
     `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
-    the stature. A body with a model of its own has its own lengths and uses none of
-    them, but they must fit the stature there, too. `body`:
+    the stature. A shipped body has arms of the measured lengths; a body that was uploaded keeps its
+    own lengths and uses none of them, but they must fit the stature there, too. `body`:
     the body to wear, one of those that the study's conditions name; if left
     out, the body of the avatar's configuration.
     """
@@ -70,7 +75,8 @@ class SessionAvatar(BaseModel):
     requested body and `humanoid` the hash of its model; `configuration` is the session's with that
     model. Added latency is set while the simulation runs, up to `longest_delay_s`.
     `standing_hips_m`: the height of the model's hips when it stands; since a model may have other
-    leg lengths than the participant, the participant's hip height is scaled to it.
+    leg lengths than the participant, the participant's hip height is scaled to it. `segments_m`:
+    the measured lengths that the body has; the model named by `humanoid` is drawn with them, too.
     """
 
     stature_m: float
@@ -82,9 +88,12 @@ class SessionAvatar(BaseModel):
     standing_hips_m: float
     body: str | None = None
     humanoid: str | None = None
+    segments_m: dict[str, float] = {}
 
 
 MS_PER_S = 1000.0
+ARM_SEGMENTS = ("upper_arm", "forearm")
+"""Measured lengths that a shipped body takes on."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +101,6 @@ class PreparedAvatar:
     """A physics avatar that was built but not recorded yet."""
 
     avatar: SessionAvatar
-    segments_m: Mapping[str, float]
 
 
 def prepare(db: Session, session_id: str, request: AvatarWish) -> PreparedAvatar:
@@ -141,8 +149,12 @@ def _prepared(
     longest_s = max(largest_s, DEFAULT_OPTIONS.longest_delay_s)
     stature_m = round(request.stature_m, 3)
     figure = figure_by_hash(db, configuration.humanoid)
-    measured_m = request.segments_m
-    model = _built(configuration, figure, stature_m, measured_m, protocol.tasks, longest_s)
+    _require_plausible(stature_m, request.segments_m)
+    worn_m: Mapping[str, float] = request.segments_m
+    if figure is not None:
+        worn_m = _arms_of(db, configuration, request.segments_m)
+        figure = figure.scaled(stature_m).with_arms(worn_m)
+    model = _built(configuration, figure, stature_m, worn_m, protocol.tasks, longest_s)
     avatar = SessionAvatar(
         stature_m=stature_m,
         configuration_hash=configuration_hash,
@@ -153,8 +165,24 @@ def _prepared(
         standing_hips_m=model.body.parts["Hips"].joint_m[1],
         body=request.body,
         humanoid=configuration.humanoid,
+        segments_m=dict(worn_m),
     )
-    return PreparedAvatar(avatar, measured_m if figure is None else {})
+    return PreparedAvatar(avatar)
+
+
+def _arms_of(
+    db: Session, configuration: Configuration, measured_m: Mapping[str, float]
+) -> Mapping[str, float]:
+    """Return the measured lengths that the model of a configuration takes on.
+
+    Shipped bodies are made for people of any proportions; a model that was uploaded keeps its own,
+    which may be what a study varies.
+    """
+    if configuration.humanoid is None:
+        return {}
+    if humanoid_by_hash(db, configuration.humanoid).origin != "shipped":
+        return {}
+    return {name: measured_m[name] for name in ARM_SEGMENTS if name in measured_m}
 
 
 def record_avatar(
@@ -182,7 +210,7 @@ def record_avatar(
     body = {
         **({} if avatar.body is None else {"body": avatar.body, "humanoid": avatar.humanoid}),
         "stature_m": avatar.stature_m,
-        "segments_m": dict(prepared.segments_m),
+        "segments_m": avatar.segments_m,
         "configuration_hash": avatar.configuration_hash,
         "model_hash": avatar.model_hash,
         "mjcf": avatar.mjcf,
@@ -239,7 +267,7 @@ def _built(
     configuration: Configuration,
     figure: Figure | None,
     stature_m: float,
-    measured_m: Mapping[str, float],
+    worn_m: Mapping[str, float],
     tasks: Tasks,
     longest_delay_s: float,
 ) -> AvatarModel:
@@ -252,19 +280,31 @@ def _built(
             "new version of the study, and start the session with this one.",
         )
     try:
-        # A body with a model of its own uses no measured lengths, but they must be somebody's.
-        proportions(stature_m, measured_m)
         return avatar_model(
             configuration,
             stature_m,
-            segments_m=measured_m if figure is None else {},
+            segments_m=worn_m if figure is None else {},
             figure=figure,
             scene=scene_of(tuple(tasks.layouts().values())),
             longest_delay_s=longest_delay_s,
         )
     except BodyError as error:
-        raise InvalidInput(
-            f"there is no such body: {error}",
-            value={"stature_m": stature_m, **measured_m},
-            remedy="Measure the participant again, or leave the lengths of segments out.",
-        ) from None
+        raise _no_such_body(error, stature_m, worn_m) from None
+
+
+def _require_plausible(stature_m: float, measured_m: Mapping[str, float]) -> None:
+    """Raise InvalidInput for lengths that nobody has, also where the body does not use them."""
+    try:
+        proportions(stature_m, measured_m)
+    except BodyError as error:
+        raise _no_such_body(error, stature_m, measured_m) from None
+
+
+def _no_such_body(
+    error: BodyError, stature_m: float, measured_m: Mapping[str, float]
+) -> InvalidInput:
+    return InvalidInput(
+        f"there is no such body: {error}",
+        value={"stature_m": stature_m, **measured_m},
+        remedy="Measure the participant again, or leave the lengths of segments out.",
+    )

@@ -8,7 +8,7 @@ note; joints and pieces stay where the model has them.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import dist
 from types import MappingProxyType
 
@@ -16,9 +16,9 @@ import numpy as np
 
 from app.science.avatar.body.hulls import Piece, piece_of
 from app.science.avatar.body.humanoid import Humanoid, HumanoidError
-from app.science.avatar.body.parts import FINGERS, PART_NAMES, SIDES
+from app.science.avatar.body.parts import FINGERS, PARENT_OF, PART_NAMES, SIDES
 from app.science.avatar.body.proportions import MAX_RATIO, MIN_RATIO, BodyError, segment_lengths
-from app.science.rotations import Vector, v_scale
+from app.science.rotations import Vector, v_add, v_length, v_scale, v_subtract
 
 _SHORTEST, _LONGEST = 0.3, 3.0
 _DIGITS = 6
@@ -70,6 +70,32 @@ class Figure:
             {name: length * factor for name, length in self.segments_m.items()},
             {part: piece.scaled(factor) for part, piece in self.pieces.items()},
             self.notes,
+        )
+
+    def with_arms(self, lengths_m: Mapping[str, float]) -> "Figure":
+        """Return the figure with arms of these lengths on both sides, from joint to joint.
+
+        `lengths_m`: by `upper_arm` and `forearm`; an arm keeps what is left out. The bones and
+        their pieces are stretched or compressed along themselves; hands and fingers keep their
+        size and move with the wrists.
+        """
+        places, pieces = dict(self.places_m), dict(self.pieces)
+        for name, length_m in lengths_m.items():
+            for start, end in ((f"{side}{one}" for one in _BONES[name]) for side in SIDES):
+                bone = v_subtract(self.places_m[end], self.places_m[start])
+                ratio = length_m / v_length(bone)
+                moved = v_scale(bone, ratio - 1.0)
+                for part in places:
+                    if _is_carried_by(part, end):
+                        places[part] = v_add(places[part], moved)
+                if start in pieces:
+                    direction = v_scale(bone, 1.0 / v_length(bone))
+                    pieces[start] = pieces[start].stretched(direction, ratio)
+        return replace(
+            self,
+            places_m=MappingProxyType(places),
+            segments_m=MappingProxyType({**self.segments_m, **lengths_m}),
+            pieces=MappingProxyType(pieces),
         )
 
 
@@ -182,6 +208,14 @@ def _foot(humanoid: Humanoid, side: str) -> Iterator[float]:
     if skins:
         along = np.concatenate(skins)
         yield float(along.max() - along.min())
+
+
+def _is_carried_by(part: str, joint: str) -> bool:
+    """Return whether the part is this one, or carried by it."""
+    above: str | None = part
+    while above is not None and above != joint:
+        above = PARENT_OF[above]
+    return above is not None
 
 
 def _is_finger(part: str, side: str) -> bool:

@@ -61,6 +61,12 @@ class Piece:
         corners = np.array(self.corners_m) * factor
         return Piece(_listed(corners), round(self.outside_m * factor, _DIGITS))
 
+    def stretched(self, direction: Vector, factor: float) -> "Piece":
+        """Return the piece stretched along a unit vector, away from its joint, on the same grid."""
+        corners, along = np.array(self.corners_m), np.array(direction)
+        stretched = corners + (factor - 1.0) * np.outer(corners @ along, along)
+        return Piece(_listed(stretched), round(self.outside_m * max(factor, 1.0), _DIGITS))
+
 
 def piece_of(points_m: FloatArray) -> Piece | None:
     """Return the piece around (N, 3) points; None if they are too few or enclose no volume."""

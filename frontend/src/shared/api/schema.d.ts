@@ -4074,8 +4074,8 @@ export interface components {
          * @description A request for a physics avatar: the participant's stature and any other lengths measured.
          *
          *     `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
-         *     the stature. A body with a model of its own has its own lengths and uses none of
-         *     them, but they must fit the stature there, too. `body`:
+         *     the stature. A shipped body has arms of the measured lengths; a body that was uploaded keeps its
+         *     own lengths and uses none of them, but they must fit the stature there, too. `body`:
          *     the body to wear, one of those that the study's conditions name; if left
          *     out, the body of the avatar's configuration.
          */
@@ -9410,7 +9410,8 @@ export interface components {
          *     requested body and `humanoid` the hash of its model; `configuration` is the session's with that
          *     model. Added latency is set while the simulation runs, up to `longest_delay_s`.
          *     `standing_hips_m`: the height of the model's hips when it stands; since a model may have other
-         *     leg lengths than the participant, the participant's hip height is scaled to it.
+         *     leg lengths than the participant, the participant's hip height is scaled to it. `segments_m`:
+         *     the measured lengths that the body has; the model named by `humanoid` is drawn with them, too.
          */
         readonly SessionAvatar: {
             /** Body */
@@ -9426,6 +9427,13 @@ export interface components {
             readonly mjcf: string;
             /** Model Hash */
             readonly model_hash: string;
+            /**
+             * Segments M
+             * @default {}
+             */
+            readonly segments_m: {
+                readonly [key: string]: number;
+            };
             /** Standing Hips M */
             readonly standing_hips_m: number;
             /** Stature M */

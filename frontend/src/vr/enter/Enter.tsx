@@ -94,7 +94,10 @@ function usePairing(onPaired: (pairing: Pairing) => void) {
   });
 }
 
-/** Use the pairing code of a link or QR code once, and remove it from the address. */
+/**
+ * Use the pairing code of a link or QR code once, and remove it from the address. Opened again in the
+ * browser that it has paired, the link changes nothing.
+ */
 function useCodeOfAddress(use: (code: string) => void): void {
   const isUsed = useRef(false);
   useEffect(() => {
@@ -103,7 +106,8 @@ function useCodeOfAddress(use: (code: string) => void): void {
     const { code, rest } = codeFromAddress(new URL(window.location.href));
     if (code === null) return;
     window.history.replaceState(null, "", rest);
-    use(code);
+    // The link that has paired this browser was opened again, such as by its QR code.
+    if (code !== storedPairing()?.code) use(code);
   }, [use]);
 }
 

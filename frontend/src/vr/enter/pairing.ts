@@ -9,6 +9,8 @@ import { ApiError, answer, server } from "@shared/api/request";
 export interface Pairing {
   readonly sessionId: string;
   readonly token: string;
+  /** The code that was used for it: its link leads here again, though a code works once. */
+  readonly code?: string;
 }
 
 const KEY = "reembody.vr.pairing";
@@ -16,8 +18,9 @@ const KEY = "reembody.vr.pairing";
 /** The pairing of this browser; null if there is none. */
 export function storedPairing(storage: Pick<Storage, "getItem"> = localStorage): Pairing | null {
   try {
-    const { sessionId, token } = JSON.parse(storage.getItem(KEY) ?? "null") ?? {};
-    return typeof sessionId === "string" && typeof token === "string" ? { sessionId, token } : null;
+    const { sessionId, token, code } = JSON.parse(storage.getItem(KEY) ?? "null") ?? {};
+    if (typeof sessionId !== "string" || typeof token !== "string") return null;
+    return { sessionId, token, ...(typeof code === "string" && { code }) };
   } catch {
     return null;
   }
@@ -43,5 +46,5 @@ export async function pair(code: string, name: string): Promise<Pairing> {
   if (paired.token === null) {
     throw new ApiError(409, { code: "wrong_device", message: "the code belongs to a tablet" });
   }
-  return { sessionId: paired.session_id, token: paired.token };
+  return { sessionId: paired.session_id, token: paired.token, code };
 }

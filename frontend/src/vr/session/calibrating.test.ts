@@ -1,3 +1,4 @@
+import type { Place } from "@shared/avatar/hips";
 import { describe, expect, it, vi } from "vitest";
 import type { Measures } from "../calibration";
 import type { HeadsetState } from "../telemetry";
@@ -41,6 +42,10 @@ async function worn({ state = BEFORE, keep = new Kept() } = {}) {
     },
   });
   let frame = 0;
+  /** The device sleeps: time passes, and nobody is seen. */
+  const sleep = (seconds: number): void => {
+    frame += Math.round(seconds * RATE_HZ);
+  };
   const draw = async (seconds: number) => {
     const until = frame + Math.round(seconds * RATE_HZ);
     while (frame < until) {
@@ -56,7 +61,18 @@ async function worn({ state = BEFORE, keep = new Kept() } = {}) {
   const calibrations = () =>
     telemetry.reports.flatMap((body) => (body.kind === "calibration" ? [body] : []));
   const isUnderway = () => headset.calibrating.isUnderway;
-  return { telemetry, headset, keep, person, madeFor, squares, draw, calibrations, isUnderway };
+  return {
+    telemetry,
+    headset,
+    keep,
+    person,
+    madeFor,
+    squares,
+    draw,
+    sleep,
+    calibrations,
+    isUnderway,
+  };
 }
 
 const order = (revision: number, calibrate: boolean, shifts_m = {}) => ({
@@ -112,6 +128,32 @@ describe("Calibration in the visit", () => {
     await draw(40);
     expect(headset.calibrating.prompt).toMatchObject({ step, held: 0, canSkip: false });
     telemetry.state = { ...BEFORE, panel: { ...panel, called: false } };
+    await draw(30);
+    expect(calibrations()).toHaveLength(1);
+  });
+
+  it("begins a step again after a sleep, in which nobody was seen to hold a pose", async () => {
+    const { headset, draw, sleep, calibrations } = await worn();
+    await draw(3);
+    const { step } = headset.calibrating.prompt ?? {};
+    expect(step).toBe("n_pose");
+    sleep(60);
+    await draw(1 / RATE_HZ);
+    expect(headset.calibrating.prompt).toMatchObject({ step, held: 0, canSkip: false });
+    await draw(0.5);
+    expect(headset.calibrating.prompt?.step).toBe(step);
+    await draw(30);
+    const [report] = calibrations();
+    expect(Math.abs((report?.stature_m ?? 0) - 1.8)).toBeLessThan(0.005);
+  });
+
+  it("waits while the scene is hidden, though the device goes on drawing", async () => {
+    const { headset, draw, calibrations } = await worn();
+    await draw(3);
+    headset.leave("asleep");
+    await draw(60);
+    expect(headset.calibrating.prompt).toMatchObject({ step: "n_pose", held: 0 });
+    headset.lookAgain();
     await draw(30);
     expect(calibrations()).toHaveLength(1);
   });
@@ -177,6 +219,18 @@ describe("Calibration in the visit", () => {
     await after.draw(1);
     expect(after.calibrations()).toEqual([]);
     expect(after.madeFor[0]?.statureM).toBe(before.madeFor[0]?.statureM);
+  });
+
+  it("keeps where the square lies for a page that is loaded again, until the session is over", async () => {
+    const before = await worn();
+    const square: Place = { positionM: [0.7, 0, -0.4], rotation: [0.8, 0, 0.6, 0] };
+    expect(before.headset.calibrating.keptSquare).toBeNull();
+    before.headset.calibrating.keepSquare(square);
+    const after = await worn({ keep: before.keep });
+    expect(after.headset.calibrating.keptSquare).toEqual(square);
+    after.telemetry.state = { ...BEFORE, status: "completed" };
+    await after.draw(0.1);
+    expect(after.headset.calibrating.keptSquare).toBeNull();
   });
 
   it("says that usual offsets are used where nothing was kept", async () => {

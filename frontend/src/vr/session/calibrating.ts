@@ -50,6 +50,8 @@ export interface Moment {
   readonly state: HeadsetState;
   /** Whether the state includes all reports. */
   readonly isSettled: boolean;
+  /** Nobody has seen the scene since the last frame: the device slept, or shows something else. */
+  readonly isInterrupted: boolean;
   readonly tracked: TrackedFrame;
   readonly source: TrackingSource;
   /** The distances that inverse kinematics left, of the newest frame; null without bodies. */
@@ -66,6 +68,7 @@ interface Underway {
 }
 
 const KEY = "reembody.calibration.";
+const SQUARE_KEY = "reembody.square.";
 const NO_SHIFTS = "{}";
 const OVER: ReadonlySet<string> = new Set(["completed", "aborted", "withdrawn"]);
 /** What changes more often than this is not worth telling. */
@@ -123,14 +126,32 @@ export class Calibrating {
     this.#source = moment.source;
     if (OVER.has(state.status)) {
       this.#underway = null;
-      this.#parts.keep.removeItem(KEY + this.#parts.sessionId);
+      const { keep, sessionId } = this.#parts;
+      for (const key of [KEY, SQUARE_KEY]) keep.removeItem(key + sessionId);
       return;
     }
     if (this.#underway === null) this.#begin(moment);
-    // Who has stopped is left alone until the experimenter has come.
-    if (state.panel?.called === true) this.#underway?.run.restartStep();
+    // Who has stopped is left alone until the experimenter has come; a pose that nobody was seen to
+    // hold is none.
+    const isLeftAlone = state.panel?.called === true || moment.isInterrupted;
+    if (isLeftAlone) this.#underway?.run.restartStep();
     else if (this.#underway !== null) this.#advance(this.#underway, moment);
     this.#shift(state);
+  }
+
+  /**
+   * Where the start square lies in the device's own floor space, as an earlier page of the session
+   * left it; null if there was none. Devices keep their room for longer than a page lives.
+   */
+  get keptSquare(): Place | null {
+    const { keep, sessionId } = this.#parts;
+    return placeFrom(keep.getItem(SQUARE_KEY + sessionId));
+  }
+
+  /** The square lies there now in the device's floor space: keep it for a page that is loaded again. */
+  keepSquare({ positionM, rotation }: Place): void {
+    const { keep, sessionId } = this.#parts;
+    keep.setItem(SQUARE_KEY + sessionId, JSON.stringify([...positionM, ...rotation]));
   }
 
   /** The device has moved its origin, and where the square was is not known. */
@@ -249,5 +270,17 @@ export class Calibrating {
     this.#shifts = shifts;
     this.calibrator.shift(calibration.shifts_m);
     this.#parts.onChange();
+  }
+}
+
+function placeFrom(text: string | null): Place | null {
+  try {
+    const values: unknown = JSON.parse(text ?? "null");
+    if (!Array.isArray(values) || values.length !== 7 || !values.every(Number.isFinite))
+      return null;
+    const [x, y, z, ...rotation] = values as [number, number, number, ...number[]];
+    return { positionM: [x, y, z], rotation: rotation as unknown as Place["rotation"] };
+  } catch {
+    return null;
   }
 }

@@ -140,6 +140,7 @@ export class Headset {
     calibrating.frame({
       state,
       isSettled: telemetry.settled,
+      isInterrupted: isGap,
       tracked,
       source: this.#source,
       goalErrorsM: this.#bodies?.latest()?.goalErrorsM ?? null,

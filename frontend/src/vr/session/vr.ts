@@ -70,6 +70,7 @@ export class Vr {
     this.#tracking = new WebXrTracking({
       onSpace: (space) => {
         this.#renderer.xr.setReferenceSpace(space);
+        this.#headset.calibrating.keepSquare(this.#tracking.roomFromSquare);
         // Seen from elsewhere from one frame to the next.
         this.#panels.cut();
         this.#panels.recentre();
@@ -97,6 +98,8 @@ export class Vr {
       withFingers,
       onFailure,
     });
+    const { keptSquare } = this.#headset.calibrating;
+    if (keptSquare !== null) this.#tracking.restoreSquare(keptSquare);
     globalThis.reembody = this.#inspection();
     // The physics is the largest part of the page: it comes beside standby and calibration.
     void fetchBodiesBeforehand().catch(() => undefined);
@@ -233,11 +236,11 @@ export class Vr {
       return this.#open({ avatar: "delayed_copy", statureM, segmentsM, surfaces, withFingers });
     }
     const avatars = await requestAvatars(token, measures, named);
-    for (const [name, { humanoid }] of avatars) {
+    for (const [name, { humanoid, segments_m: armsM = {} }] of avatars) {
       // Drawn as a plain body until its model is there; a study is not held up by a picture.
       if (humanoid == null) continue;
       loadModel(token, humanoid).then(
-        (model) => this.#world.addBody(name, model),
+        (model) => this.#world.addBody(name, model, armsM),
         this.#parts.onFailure,
       );
     }

@@ -30,6 +30,8 @@ import { installVirtualClock } from "./virtualClock";
 
 interface PersonWish {
   readonly statureM: number;
+  /** From finger tip to finger tip; the product's usual skeleton has longer arms than most people. */
+  readonly spanM?: number;
   readonly seed: number;
   readonly footedness?: "left" | "right";
   /** How the person moves; drawn from the seed if it is left out. */

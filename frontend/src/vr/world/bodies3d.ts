@@ -3,6 +3,7 @@
  * This module imports three.js.
  */
 
+import type { ArmsM } from "@shared/stage/skin/arms";
 import type { BodyMesh, BodyModel } from "@shared/stage/skin/bodyModel";
 import { BodyBones, skinned } from "@shared/stage/skin/bones";
 import { Parts } from "@shared/stage/skin/pose";
@@ -47,6 +48,12 @@ const TRANSPARENT = {
   ...{ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 },
 } as const;
 
+/** A body's model, and the arms that it has been given where they are not its own. */
+export interface Wearable {
+  readonly model: BodyModel;
+  readonly armsM?: ArmsM;
+}
+
 /**
  * A model that is worn. Two draws a mesh on one skeleton: what the eyes see, and its reflection,
  * whose matrix is the mirror's (three.js turns its faces round itself).
@@ -61,9 +68,9 @@ export class SkinnedBody implements Body3d {
   readonly #materials = new Map<Material, Material>();
   readonly #mirror: Mirror | null;
 
-  constructor(model: BodyModel, statureM: number, look: Look, mirror: Mirror | null) {
+  constructor({ model, armsM }: Wearable, statureM: number, look: Look, mirror: Mirror | null) {
     this.#mirror = mirror;
-    this.#bones = new BodyBones(model, statureM, POSE);
+    this.#bones = new BodyBones(model, statureM, POSE, armsM);
     const { binding } = model;
     this.partNames = binding.parts;
     this.hipsHeightM = ((binding.joints_m[0]?.[1] ?? 0) * statureM) / binding.stature_m;

@@ -9,12 +9,13 @@
  * stands behind the glass (`mirror.ts`). This module imports three.js.
  */
 import type { Place } from "@shared/avatar/hips";
+import type { ArmsM } from "@shared/stage/skin/arms";
 import type { BodyModel } from "@shared/stage/skin/bodyModel";
 import { type Camera, Color, Group, Scene, type WebGLRenderer } from "three";
 import type { Limb } from "../tasks";
 import type { Palette } from "./appearance";
 import { Board, boardWords } from "./board";
-import { type Body3d, type Look, PlainBody, SkinnedBody } from "./bodies3d";
+import { type Body3d, type Look, PlainBody, SkinnedBody, type Wearable } from "./bodies3d";
 import {
   areaOf,
   type BoundaryProblem,
@@ -104,7 +105,7 @@ export class World {
   readonly #area;
   readonly #line;
   readonly #room;
-  readonly #models = new Map<string | null, BodyModel>();
+  readonly #models = new Map<string | null, Wearable>();
   /** By name of the body: kept, so that putting one on again takes no time. */
   readonly #wardrobe = new Map<string | null, Map<Slot, Body3d>>();
   #isSeenFromWithin = true;
@@ -141,9 +142,12 @@ export class World {
     );
   }
 
-  /** Keep a body's model under its name (null: the configuration's), to be worn later. */
-  addBody(name: string | null, model: BodyModel): void {
-    this.#models.set(name, model);
+  /**
+   * Keep a body's model under its name (null: the configuration's), to be worn later. `armsM`: the
+   * arms that it has where they are not its own.
+   */
+  addBody(name: string | null, model: BodyModel, armsM: ArmsM = {}): void {
+    this.#models.set(name, { model, armsM });
     this.#clear(name);
   }
 
@@ -297,11 +301,11 @@ export class World {
     const known = this.#bodies.get(slot);
     if (known !== undefined) return known;
     const look: Look = slot === "remote" || slot === "local" ? "own" : "transparent";
-    const model = this.#models.get(this.#worn);
+    const worn = this.#models.get(this.#worn);
     const body =
-      model === undefined
+      worn === undefined
         ? new PlainBody(this.#statureM, look, this.#reflecting, this.#armStretch)
-        : new SkinnedBody(model, this.#statureM, look, this.#reflecting);
+        : new SkinnedBody(worn, this.#statureM, look, this.#reflecting);
     body.setSeenFromWithin(slot !== "figure" && this.#isSeenFromWithin);
     this.#bodies.set(slot, body);
     this.scene.add(body.group);

@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 
 import mujoco
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
@@ -110,6 +111,36 @@ def test_measured_segment_lengths_change_the_model(fresh_lab: Lab, session: Json
     assert refusal["value"] == {"stature_m": 1.7, "thigh": 2.9}
     for no_number in ({"stature_m": True}, {"stature_m": "1.75"}):
         error(request_avatar(fresh_lab, token, no_number), 422, "invalid_input")
+
+
+@pytest.mark.one_engine
+def test_a_shipped_body_has_the_arms_that_were_measured(fresh_lab: Lab) -> None:
+    """The shipped body's arms are as long as the participant's, and the record says how long."""
+    text = study("{key: standard, version: 2}")
+    ok(fresh_lab.operator.post("/api/studies", json={"yaml": text}))
+    view: Json = ok(fresh_lab.operator.post(f"/api/studies/{KEY}/sessions", json={"kind": "test"}))
+    token = fresh_lab.headset_token(view["id"])
+    usual = ok(request_avatar(fresh_lab, token, {"stature_m": 1.7}))
+    assert usual["segments_m"] == {}
+    arms_m = {"upper_arm": 0.27, "forearm": 0.21}
+    # Of the lengths that are measured, only those of the arms can be given to this body.
+    wish = {"stature_m": 1.7, "segments_m": {**arms_m, "thigh": 0.42}}
+    fitted = ok(request_avatar(fresh_lab, token, wish))
+    assert (fitted["humanoid"], fitted["segments_m"]) == (usual["humanoid"], arms_m)
+    for reply, expected_m in ((usual, None), (fitted, arms_m)):
+        model = mujoco.MjModel.from_xml_string(reply["mjcf"])
+        for side in ("Left", "Right"):
+            lengths = (("LowerArm", "upper_arm"), ("Hand", "forearm"))
+            for part, name in lengths:
+                length_m = float(np.linalg.norm(model.body(f"{side}{part}").pos))
+                if expected_m is None:
+                    assert length_m > arms_m[name] + 0.02
+                else:
+                    assert length_m == pytest.approx(expected_m[name], abs=1e-5)
+        assert np.linalg.norm(model.body("LeftLowerLeg").pos) != pytest.approx(0.42, abs=1e-3)
+    with fresh_lab.database.reading() as db:
+        recorded = [content_body(row) for row in contents_of(db, view["id"], "avatar")]
+    assert [one["segments_m"] for one in recorded if isinstance(one, dict)] == [{}, arms_m]
 
 
 @pytest.mark.one_engine

@@ -52,6 +52,36 @@ def test_lengths_are_the_models_own() -> None:
     assert arm == pytest.approx(0.93 * SCALE * usual["forearm"], abs=1e-5)
 
 
+def test_arms_take_on_measured_lengths() -> None:
+    """Bones and pieces of the arms are stretched along themselves; all else keeps its size."""
+    own = figure().scaled(STATURE_M)
+    lengths_m = {"upper_arm": 0.27, "forearm": 0.23}
+    fitted = own.with_arms(lengths_m)
+    body = build_body(STATURE_M, figure=fitted)
+    places_m = body.places_m()
+    for side in ("Left", "Right"):
+        shoulder, elbow, wrist = (f"{side}{one}" for one in ("UpperArm", "LowerArm", "Hand"))
+        assert dist(places_m[shoulder], places_m[elbow]) == pytest.approx(0.27, abs=1e-9)
+        assert dist(places_m[elbow], places_m[wrist]) == pytest.approx(0.23, abs=1e-9)
+        assert fitted.places_m[shoulder] == own.places_m[shoulder]
+        for bone, end, name in (
+            (shoulder, elbow, "upper_arm"),
+            (elbow, wrist, "forearm"),
+        ):
+            ratio = lengths_m[name] / dist(own.places_m[bone], own.places_m[end])
+            before, after = (np.array(one.pieces[bone].corners_m) for one in (own, fitted))
+            assert np.ptp(after[:, 0]) == pytest.approx(ratio * np.ptp(before[:, 0]), rel=0.01)
+            assert np.ptp(after[:, 1]) == pytest.approx(np.ptp(before[:, 1]), rel=0.01)
+        assert fitted.pieces[wrist] == own.pieces[wrist]
+        tip = f"{side}MiddleDistal"
+        assert np.subtract(fitted.places_m[tip], fitted.places_m[wrist]) == pytest.approx(
+            np.subtract(own.places_m[tip], own.places_m[wrist]), abs=1e-9
+        )
+    for part in ("Head", "LeftFoot", "RightShoulder"):
+        assert fitted.places_m[part] == own.places_m[part]
+    assert body.proportions.segments_m["upper_arm"] == 0.27
+
+
 def test_shapes_reach_from_joint_to_joint() -> None:
     """Limb and finger shapes span the model's own joints, and the soles lie on the floor."""
     body = build_body(STATURE_M, figure=figure())

@@ -12,6 +12,7 @@ import {
   SkinnedMesh,
   type Sphere,
 } from "three";
+import { type ArmsM, withArms } from "./arms";
 import type { BodyModel } from "./bodyModel";
 import { Parts, type PoseSource } from "./pose";
 
@@ -29,8 +30,10 @@ export class BodyBones {
     readonly model: BodyModel,
     statureM: number,
     pose: Pick<PoseSource, "joints" | "parents">,
+    /** Arms other than the model's own. */
+    armsM: ArmsM = {},
   ) {
-    const { binding } = model;
+    const binding = withArms(model.binding, statureM, armsM);
     const scale = statureM / binding.stature_m;
     this.parts = new Parts(binding, scale, pose);
     this.#bones = model.nodes.map(() => new Bone());

@@ -47,6 +47,16 @@ export class WebXrTracking implements TrackingSource {
     return this.currentRoom;
   }
 
+  /** Where the start square lies in the device's floor space. */
+  get roomFromSquare(): Place {
+    return this.square;
+  }
+
+  /** Put the start square there in the device's floor space, from the next session on. */
+  restoreSquare(roomFromSquare: Place): void {
+    this.square = roomFromSquare;
+  }
+
   /** Move the start square to there, in the world as it is read now. */
   moveSquare(worldFromSquare: Place): void {
     this.currentRoom?.placeSquare(composed(this.currentRoom.roomFromSquare, worldFromSquare));
