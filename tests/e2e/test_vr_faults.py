@@ -210,6 +210,16 @@ def test_a_phase_outlives_what_happens_to_its_headset_page_network_and_server(
             expect(waiting).to_be_hidden(timeout=PATIENCE_MS)
         cockpit.close()
 
+        # VR ends, as by the device's own button, and is entered again.
+        visit.draw(20)
+        last_s = wearing.now_s
+        page.do("void journey.headset.session.end()")
+        page.until("journey.headset.session === null")
+        wearing.paused_at("asleep", last_s)
+        page.enter("Return to VR")
+        assert wearing.seen() == ("paused", "asleep")
+        wearing.resume()
+
         # Recentred.
         visit.draw(20)
         last_s = wearing.now_s

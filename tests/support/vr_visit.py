@@ -29,7 +29,8 @@ PATIENCE_MS = 20_000
 ENDED = ("completed", "aborted", "withdrawn")
 OVERTAKEN = ("stale", "not_now")
 """Error codes of a command that came after the headset's own change."""
-FRAMES_AT_ONCE = 45
+FRAMES_AT_ONCE, FRAMES_OF_A_PHASE = 45, 360
+"""Frames between two looks of the operator, who has nothing to do while a phase runs."""
 SPAN_BY_STATURE = 1.03
 """As of British men in the median (Pheasant 1996); the product's usual skeleton has 1.14."""
 QUICK = {
@@ -97,6 +98,10 @@ class WornHeadset:
         """Draw frames, at the device's rate or so far apart; return the time of the last one, s."""
         given = [frames, None if frame_s is None else 1000.0 * frame_s]
         return float(self.page.evaluate("([frames, ms]) => journey.step(frames, ms)", given))
+
+    def act(self, frames: int) -> int:
+        """Draw as the participant acts, at most as many frames; return how many."""
+        return int(self.page.evaluate("(frames) => journey.act(frames)", frames))
 
     def picture(self, drawing: str = "reembody") -> bytes:
         """Draw a frame and return what both eyes see in it as a PNG file.
@@ -170,18 +175,20 @@ class Visit:
                     self._shown = key
                     self.at_step(key)
             self._operate(view)
-            self.draw(FRAMES_AT_ONCE)
+            self._act(FRAMES_OF_A_PHASE if _is_running(view) else FRAMES_AT_ONCE)
 
     def draw(self, frames: int) -> None:
-        """Draw frames; the participant presses both grips while the figure waits to be entered."""
+        """Draw as many frames; the participant presses both grips to step into the figure."""
+        while frames > 0:
+            frames -= self._act(frames)
+
+    def _act(self, frames: int) -> int:
+        """Draw at most as many frames, fewer if the session's state changes; return how many."""
         began_s = time.monotonic()
-        if self.headset.tell("globalThis.reembody?.place") == "stepping_in":
-            self.headset.do("journey.grip(true)")
-        else:
-            self.headset.do("journey.grip(false)")
-        self.headset.step(frames)
-        self.frames += frames
+        drawn = self.headset.act(frames)
+        self.frames += drawn
         self.took_s += time.monotonic() - began_s
+        return drawn
 
     def _operate(self, view: Json) -> None:
         if view["status"] == "planned":
@@ -206,6 +213,11 @@ class Visit:
             return {}
         stature_m = round(self.person.stature_m, 3)
         return {"height_m": {"stated": round(stature_m, 2), "matched": stature_m}}
+
+
+def _is_running(view: Json) -> bool:
+    current = view["current"]
+    return current is not None and current["status"] == "running"
 
 
 def begun(

@@ -149,6 +149,23 @@ class Journey {
     return this.clock.nowMs / 1000;
   }
 
+  /**
+   * Draw frames as somebody who presses both grips while the figure waits to be stepped into; ends
+   * early when the session has changed, which may call for the operator. Resolves to how many
+   * were drawn.
+   */
+  async act(frames: number): Promise<number> {
+    const page = globalThis.reembody;
+    const version = page?.state.version;
+    this.grip(page?.place === "stepping_in");
+    let drawn = 0;
+    while (drawn < frames && page?.state.version === version) {
+      await this.step(1);
+      drawn++;
+    }
+    return drawn;
+  }
+
   /** Let go of what was kept about the frames so far, so that only what the page keeps is left. */
   forget(): void {
     this.tookMs.length = 0;
