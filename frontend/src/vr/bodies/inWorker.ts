@@ -28,6 +28,8 @@ import { INPUT_BYTES, InputSlot, RESULT_BYTES, ResultSlot } from "./worker/wire"
 const FIRST_INTERVAL_S = 1 / 90;
 /** An age beyond this is a gap, not what the worker adds. */
 const OLDEST_S = 0.1;
+/** A worker that has failed answers nothing; who waits for it looks again. */
+const LONGEST_WAIT_MS = 100;
 /** Share of a new frame in the running mean of what the worker adds. */
 const NEW_SHARE = 0.05;
 
@@ -174,9 +176,7 @@ export class BodiesInWorker implements Bodies {
 
   /** Resolves when the worker has answered every frame and command: for clocks that tests step. */
   async idle(): Promise<void> {
-    while (!this.isIdle) {
-      await new Promise((resolve) => setTimeout(resolve, 0));
-    }
+    while (!this.isIdle) await this.frames.nextAnswer();
   }
 
   dispose(): void {
@@ -236,6 +236,8 @@ interface Frames {
   /** Where the next input is written. */
   readonly slot: InputSlot;
   readonly isIdle: boolean;
+  /** Resolves when the worker may have become idle, without asking for it all the time. */
+  nextAnswer(): Promise<unknown>;
   publish(): void;
   /** The newest result that was not taken yet. */
   take(): ResultSlot | null;
@@ -265,6 +267,15 @@ class FramesInMemory implements Frames {
   get isIdle(): boolean {
     const { control } = this;
     return Atomics.load(control, ANSWERED_WORD) === Atomics.load(control, BELL_WORD);
+  }
+
+  async nextAnswer(): Promise<unknown> {
+    const { control } = this;
+    const answered = Atomics.load(control, ANSWERED_WORD);
+    if (Atomics.load(control, BELL_WORD) === answered) return undefined;
+    // Asking again and again takes a processor that the worker may need.
+    if (!("waitAsync" in Atomics)) return new Promise((resolve) => setTimeout(resolve, 0));
+    return Atomics.waitAsync(control, ANSWERED_WORD, answered, LONGEST_WAIT_MS).value;
   }
 
   publish(): void {
@@ -305,6 +316,7 @@ class FramesByMessage implements Frames {
   private taken: ArrayBuffer | null = null;
   private isInFlight = false;
   private isWaiting = false;
+  private onAnswer: (() => void)[] = [];
 
   constructor(private readonly port: BodiesPort) {}
 
@@ -323,6 +335,13 @@ class FramesByMessage implements Frames {
     else this.send();
   }
 
+  nextAnswer(): Promise<unknown> {
+    return new Promise<void>((resolve) => {
+      this.onAnswer.push(resolve);
+      setTimeout(resolve, LONGEST_WAIT_MS);
+    });
+  }
+
   take(): ResultSlot | null {
     this.taken = this.newest;
     this.newest = null;
@@ -335,6 +354,7 @@ class FramesByMessage implements Frames {
     this.newest = result;
     this.isInFlight = false;
     if (this.isWaiting) this.send();
+    for (const resolve of this.onAnswer.splice(0)) resolve();
   }
 
   beforeCommand(): void {}

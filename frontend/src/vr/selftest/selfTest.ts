@@ -43,6 +43,7 @@ export interface SelfTestInspection {
   readonly frames: number;
   /** Whether the bodies of every frame drawn so far are computed. */
   readonly isIdle: boolean;
+  idle(): Promise<void>;
   isRendering: boolean;
   readonly panel: Pick<Panels, "targetsM"> & { readonly screen: PanelScreen };
   readonly drawn: { readonly calls: number; readonly triangles: number };
@@ -403,6 +404,7 @@ export class SelfTest {
       get isIdle() {
         return test.#body.isIdle;
       },
+      idle: () => test.#body.idle(),
       get isRendering() {
         return test.#isRendering;
       },

@@ -62,6 +62,10 @@ export class TestedBody {
     return this.#bodies?.isIdle ?? true;
   }
 
+  async idle(): Promise<void> {
+    await this.#bodies?.idle();
+  }
+
   /** What moves the body in this frame: the wearer, or the script that follows the plan. */
   movedBy(worn: TrackedFrame, movement: Movement | null): TrackedFrame {
     const { parts, timeS } = worn;

@@ -42,6 +42,8 @@ export interface Inspection {
   readonly recorded: number;
   /** Whether the bodies of every frame drawn so far are computed. */
   readonly isIdle: boolean;
+  /** Resolves when they are. */
+  idle(): Promise<void>;
   /** Whether frames are rendered; everything else goes on without. */
   isRendering: boolean;
   /** What the participant reads, and where what can be pressed is in the room. */

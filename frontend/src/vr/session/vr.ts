@@ -297,6 +297,7 @@ export class Vr {
       get isIdle() {
         return vr.#bodies?.isIdle ?? true;
       },
+      idle: async () => vr.#bodies?.idle(),
       get isRendering() {
         return vr.#isRendering;
       },

@@ -38,8 +38,6 @@ interface PersonWish {
   readonly traits?: Traits;
 }
 
-/** Frames that may pass in a step before it lets the page's other work happen. */
-const ANSWER_PATIENCE_MS = 2000;
 /** Longer than a new screen takes no press. */
 const AIM_FRAMES = 16;
 /** A press and the pause after it are each longer than what counts as trembling. */
@@ -225,13 +223,13 @@ class Journey {
     });
   }
 
-  /** Wait until the bodies of this frame are computed, and let the page's messages be handled. */
+  /**
+   * Wait until the bodies of this frame are computed, and let the page's messages be handled. The
+   * page sleeps meanwhile: on a busy machine the worker needs its processor.
+   */
   async #answered(): Promise<void> {
-    const untilMs = this.clock.realNowMs() + ANSWER_PATIENCE_MS;
-    do {
-      await nextTask();
-      if ((globalThis.reembodyTest ?? globalThis.reembody)?.isIdle ?? true) return;
-    } while (this.clock.realNowMs() < untilMs);
+    await nextTask();
+    await (globalThis.reembodyTest ?? globalThis.reembody)?.idle();
   }
 }
 

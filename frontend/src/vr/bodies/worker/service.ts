@@ -86,6 +86,7 @@ class Service {
       const input = inputs.take();
       if (input === null) {
         Atomics.store(control, ANSWERED_WORD, bell);
+        Atomics.notify(control, ANSWERED_WORD);
         Atomics.wait(control, BELL_WORD, bell);
         continue;
       }
