@@ -1,12 +1,15 @@
 """The simulated participant's body and movement, either synthetic or from a capture."""
 
+import logging
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from app.adapters.captures import CaptureError, read_capture_file
 from app.errors import file_problem
+from app.science.anatomy import Notice, sentences
 from app.science.retargeting import (
     captured_fingers,
     checked_skeleton,
@@ -74,7 +77,8 @@ def _captured(path: Path, skeleton: Skeleton) -> tuple[Movement, FloatArray | No
 def skeleton_motion(path: Path) -> RigMotion:
     """Return the movement of the capture's own skeleton, or of one fitted to its markers or bodies.
 
-    A mirrored skeleton is mirrored back (`checked_skeleton`).
+    A skeleton that is mirrored or upside down is mended (`checked_skeleton`). What anatomy finds is
+    logged as a warning, once for each finding.
 
     Raises:
         UnusableCapture: no skeleton can be fitted.
@@ -82,13 +86,27 @@ def skeleton_motion(path: Path) -> RigMotion:
     """
     motion = read_capture_file(path).motion
     if isinstance(motion, RigMotion):
-        return checked_skeleton(motion, propose_joint_map(motion.rig).joint_map)[0]
+        skeleton, notices = checked_skeleton(motion, propose_joint_map(motion.rig).joint_map)
+        _warn(path, notices)
+        return skeleton
     from app.science.fitting import FitError, fit_skeleton  # most captures have a skeleton
 
     try:
-        return fit_skeleton(motion).motion
+        fitted = fit_skeleton(motion)
     except FitError as error:
         raise UnusableCapture(f"{path} cannot be used: {error}") from error
+    _warn(path, fitted.notices)
+    return fitted.motion
+
+
+def _warn(path: Path, notices: tuple[Notice, ...]) -> None:
+    for sentence in sentences(notices):
+        _warn_once(f"{path.name}: {sentence}")
+
+
+@cache
+def _warn_once(text: str) -> None:
+    logging.getLogger(__name__).warning("%s", text)
 
 
 @dataclass(frozen=True)

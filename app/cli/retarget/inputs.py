@@ -14,7 +14,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -27,6 +27,7 @@ from app.science.retargeting import (
     JointMap,
     Ramp,
     Steps,
+    check_joint_map,
     checked_skeleton,
     named_avatar,
     named_stature_m,
@@ -53,16 +54,23 @@ class Clip:
         motion: of the capture's skeleton, or of the one fitted to its markers or bodies.
         notes: what a user should know, each a sentence.
         notices: what anatomy does not allow, and whether it was mended.
+        joint_map: body joint -> joint of the skeleton.
     """
 
     capture: Capture
     motion: RigMotion
     notes: tuple[str, ...]
-    notices: tuple[Notice, ...] = ()
+    notices: tuple[Notice, ...]
+    joint_map: JointMap
 
 
-def read_clip(path: Path, reading: Reading) -> Clip:
+def read_clip(path: Path, reading: Reading, own_map: Path | None = None) -> Clip:
     """Read a capture, and fit a skeleton if it contains none.
+
+    Args:
+        path: the capture.
+        reading: how to read it.
+        own_map: JSON file with a joint map; None to propose one by joint names.
 
     Raises:
         ValueError: the file cannot be used, with line and reason.
@@ -73,9 +81,12 @@ def read_clip(path: Path, reading: Reading) -> Clip:
     except CaptureError as error:
         raise ValueError(f"{path}: {error}") from error
     if isinstance(capture.motion, RigMotion):
-        joint_map = propose_joint_map(capture.motion.rig).joint_map
-        motion, notices = checked_skeleton(capture.motion, joint_map)
-        return Clip(capture, motion, capture.notes, (*capture.notices, *notices))
+        rig = capture.motion.rig
+        by_names = propose_joint_map(rig).joint_map
+        joint_map = by_names if own_map is None else joint_map_of(rig, own_map)
+        check_joint_map(rig, joint_map)
+        motion, notices = checked_skeleton(capture.motion, joint_map, names_map=by_names)
+        return Clip(capture, motion, capture.notes, (*capture.notices, *notices), joint_map)
     from app.science.fitting import FitError, fit_skeleton  # only needed for markers
 
     try:
@@ -83,11 +94,21 @@ def read_clip(path: Path, reading: Reading) -> Clip:
     except FitError as error:
         raise ValueError(f"{path}: {error}") from error
     notes = (*capture.notes, *fitted.notes)
-    return Clip(capture, fitted.motion, notes, fitted.notices)
+    joint_map = joint_map_of(fitted.motion.rig, own_map)
+    return Clip(capture, fitted.motion, notes, (*capture.notices, *fitted.notices), joint_map)
 
 
-def read_avatar(key: str) -> tuple[Rig, JointMap]:
-    """Return the avatar that a key or a file names, and its joint map.
+@dataclass(frozen=True, eq=False)
+class Avatar:
+    """An avatar, its joint map (body joint -> joint of its rig), and what anatomy says of it."""
+
+    rig: Rig
+    joint_map: JointMap
+    notices: tuple[Notice, ...] = ()
+
+
+def read_avatar(key: str) -> Avatar:
+    """Return the avatar that a key or a file names.
 
     Raises:
         ValueError: neither a stature nor a file with a skeleton.
@@ -95,9 +116,10 @@ def read_avatar(key: str) -> tuple[Rig, JointMap]:
     """
     path = Path(key)
     if named_stature_m(key) is not None or not path.exists():
-        return named_avatar_or_file(key), REFERENCE_JOINT_MAP
-    rig = read_clip(path, Reading()).motion.rig
-    return rig, propose_joint_map(rig).joint_map
+        return Avatar(named_avatar_or_file(key), REFERENCE_JOINT_MAP)
+    clip = read_clip(path, Reading())
+    told = tuple(replace(one, what=f"The avatar's file: {one.what}") for one in clip.notices)
+    return Avatar(clip.motion.rig, clip.joint_map, told)
 
 
 def named_avatar_or_file(key: str) -> Rig:

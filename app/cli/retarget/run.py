@@ -6,9 +6,9 @@ from pathlib import Path
 from app.adapters.captures import WRITERS
 from app.cli.errors import require_folder_of
 from app.cli.retarget.inputs import (
+    Avatar,
     Clip,
     ground_along,
-    joint_map_of,
     read_avatar,
     read_clip,
     reading_of,
@@ -57,16 +57,17 @@ class RetargetOrder:
 
 @dataclass(frozen=True, eq=False)
 class Done:
-    """The result of a retargeting, with its options and the clip."""
+    """The result of a retargeting, with its options, the clip and the avatar."""
 
     order: RetargetOrder
     clip: Clip
+    avatar: Avatar
     result: Retargeted
 
     @property
     def notices(self) -> tuple[Notice, ...]:
-        """What anatomy does not allow, of the capture and then of its walk."""
-        return (*self.clip.notices, *self.result.notices)
+        """What anatomy does not allow, of the capture, of its walk, and of the avatar."""
+        return (*self.clip.notices, *self.result.notices, *self.avatar.notices)
 
 
 def carry_out(order: RetargetOrder) -> Done:
@@ -78,24 +79,23 @@ def carry_out(order: RetargetOrder) -> Done:
     """
     _check_out(order)
     along = ground_along(order.ground)
-    avatar, avatar_map = read_avatar(order.to)
-    clip = read_clip(order.clip, reading_of(order.skeleton, order.unit, order.up))
-    source_map = joint_map_of(clip.motion.rig, order.joint_map)
-    check_joint_map(clip.motion.rig, source_map)
-    check_joint_map(avatar, avatar_map)
+    avatar = read_avatar(order.to)
+    reading = reading_of(order.skeleton, order.unit, order.up)
+    clip = read_clip(order.clip, reading, order.joint_map)
+    check_joint_map(clip.motion.rig, clip.joint_map)
+    check_joint_map(avatar.rig, avatar.joint_map)
+    bodies = (clip.joint_map, avatar.rig, avatar.joint_map)
     ground: Ground = Flat()
     if along is not None:
-        scale = Retargeter(clip.motion.rig, source_map, avatar, avatar_map).scale
+        scale = Retargeter(clip.motion.rig, *bodies).scale
         ground = along(scale * clip.motion.root_positions_m)
-    result = retarget_motion(
-        clip.motion, source_map, avatar, avatar_map, ground=ground, lock=order.lock_feet
-    )
+    result = retarget_motion(clip.motion, *bodies, ground=ground, lock=order.lock_feet)
     for notice in result.notices:
         if notice.action == "refused":
             raise ValueError(f"{order.clip}: {notice.sentence}")
     if order.out is not None:
         write_motion(order.out, result.motion)
-    return Done(order, clip, result)
+    return Done(order, clip, avatar, result)
 
 
 def write_motion(path: Path, motion: RigMotion) -> None:

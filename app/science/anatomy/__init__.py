@@ -1,4 +1,4 @@
-"""Check captured bodies against human anatomy: left and right, lengths, sides."""
+"""Check captured bodies against human anatomy: up and down, left and right, lengths, sides."""
 
 from app.science.anatomy.handedness import (
     Handedness,
@@ -17,6 +17,13 @@ from app.science.anatomy.lengths import (
     stature_from,
 )
 from app.science.anatomy.notice import Notice, Rule, mirrored_notice, sentences
+from app.science.anatomy.uprightness import (
+    tilts_deg,
+    turned_over_bodies,
+    turned_over_markers,
+    turned_over_skeleton,
+    upright_notice,
+)
 
 __all__ = [
     "PAIRED",
@@ -35,4 +42,9 @@ __all__ = [
     "sentences",
     "sides_agree",
     "stature_from",
+    "tilts_deg",
+    "turned_over_bodies",
+    "turned_over_markers",
+    "turned_over_skeleton",
+    "upright_notice",
 ]

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-Rule = Literal["mirrored", "pelvis", "sides", "length", "toes", "step_height", "unit"]
-"""The rule that a body breaks: left and right are mirrored; hip centres lie above the pelvis or its
-markers contradict those of the legs; two sides differ; a length does not fit the others; toes are
-missing; step heights do not scale with the legs. Or a file's unit of length is only known from the
-size of the body, `unit`."""
+Rule = Literal["mirrored", "pelvis", "sides", "length", "toes", "step_height", "unit", "upright"]
+"""The rule that a body breaks: left and right are mirrored; it is upside down or lies; hip centres
+lie above the pelvis or its markers contradict those of the legs; two sides differ; a length does
+not fit the others; toes are missing; step heights do not scale with the legs. Or a file's unit of
+length is only known from the size of the body, `unit`."""
 
 
 @dataclass(frozen=True)

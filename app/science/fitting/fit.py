@@ -11,6 +11,10 @@ from app.science.anatomy import (
     mirrored_markers,
     mirrored_notice,
     sentences,
+    tilts_deg,
+    turned_over_bodies,
+    turned_over_markers,
+    upright_notice,
 )
 from app.science.fitting.assembly import assemble
 from app.science.fitting.bodies import parts_of_bodies
@@ -51,6 +55,12 @@ def fit_skeleton(motion: MarkerMotion | BodyMotion) -> Fitted:
     notices: list[Notice] = []
     if isinstance(motion, BodyMotion):
         fit = _fit_bodies(motion)
+        upright = upright_notice(tilts_deg(_places(fit.motion)))
+        if upright is not None:
+            notices.append(upright)
+        if upright is not None and upright.action == "mended":
+            motion = turned_over_bodies(motion)
+            fit = _fit_bodies(motion)
         found = handedness_of(_places(fit.motion))
         if found.is_mirrored:
             share = 100.0 * max(found.agreeing.values())
@@ -72,15 +82,30 @@ def _fit_bodies(motion: BodyMotion) -> Fitted:
 def _fit_markers(motion: MarkerMotion) -> tuple[Fitted, list[Notice]]:
     if motion.frame_count == 0:
         raise FitError("The capture has no frames, so no skeleton can be fitted.")
+    notices: list[Notice] = []
     marks = landmarks_of(motion)
+    upright = upright_notice(tilts_deg(_joints_near(marks)))
+    if upright is not None:
+        notices.append(upright)
+    if upright is not None and upright.action == "mended":
+        motion = turned_over_markers(motion)
+        marks = landmarks_of(motion)
     wrong = label_notice(marks)
     if wrong is not None and wrong.action == "refused":
         raise FitError(wrong.sentence)
     if wrong is not None:
+        notices.append(wrong)
         marks = landmarks_of(mirrored_markers(motion))
     core, limbs, notes = _parts_of_markers(marks)
-    fit = _assembled(core, limbs, motion.rate_hz, notes)
-    return fit, [] if wrong is None else [wrong]
+    return _assembled(core, limbs, motion.rate_hz, notes), notices
+
+
+def _joints_near(marks: Landmarks) -> dict[str, FloatArray]:
+    """Return markers that are near enough to hips and ankles to tell up from down."""
+    if not marks.has("LASI", "RASI", "LANK", "RANK"):
+        return {}
+    hips = marks.middle("LASI", "RASI")
+    return {"Hips": hips, "LeftFoot": marks["LANK"], "RightFoot": marks["RANK"]}
 
 
 def _places(motion: RigMotion) -> dict[str, FloatArray]:

@@ -7,7 +7,8 @@ its front (from heels or ankles to toes). In the median over the frames
 
 - the pelvis' up has to point away from the knees, else hip centres would lie above the pelvis;
 - toes have to point to the front = up x right;
-- the legs, and the shoulders, have to be in the order of the pelvis, left to right.
+- the legs, the feet and the shoulders have to be in the order of the pelvis, left to right. Feet
+  cross a little where people walk as on a line; exchanged ones lie far on the wrong side.
 
 If only the first two fail, left and right are mirrored, as from left-handed axes: the capture is
 mirrored back. Anything else is a wrong label, which cannot be mended without guessing.
@@ -19,6 +20,8 @@ from app.science.anatomy import Notice, Rule, mirrored_notice
 from app.science.fitting.landmarks import Landmarks
 from app.science.rotations import FloatArray
 
+_CROSSED = -0.15
+"""Cosine of the ankles' left-to-right with the pelvis' below which the feet are exchanged."""
 _NEEDED = ("LASI", "RASI", "LKNE", "RKNE", "LANK", "RANK")
 
 
@@ -37,11 +40,14 @@ def label_notice(marks: Landmarks) -> Notice | None:
     order = {"knees": _cosine(marks["RKNE"] - marks["LKNE"], right)}
     if marks.has("LACR", "RACR"):
         order["shoulders"] = _cosine(marks["RACR"] - marks["LACR"], right)
+    ankles = _cosine(marks["RANK"] - marks["LANK"], right)
+    if ankles < _CROSSED:
+        order["feet"] = ankles
     for part, cosine in order.items():
         if cosine < 0.0:
             return _refused(
                 f"Left and right of the {part} are swapped against the pelvis.",
-                f"the {part}' left-to-right is turned by {_degrees(cosine)} from the pelvis'",
+                f"the left-to-right of the {part} is turned by {_degrees(cosine)} from the pelvis'",
                 "less than 90 degrees",
                 "Exchange the labels of left and right that are wrong, and export again.",
             )

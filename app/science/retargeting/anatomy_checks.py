@@ -1,9 +1,10 @@
 """Check by anatomy a skeleton that a file contains, and the walk that comes of it.
 
 Skeletons of files are transferred by their joints' rotations, so their lengths matter only for
-scale: what does not fit is noted. Left and right do matter: a mirrored skeleton faces backwards,
-and its feet would swing from the wrong side of the ankle (step heights of 2.5 to 3.6 times the
-source's were seen). It is mirrored back.
+scale: what does not fit is noted. Up and down, left and right do matter: a skeleton upside down is
+turned over, since its feet would hang from the ceiling. A mirrored one faces backwards, and its
+feet would swing from the wrong side of the ankle (step heights of 2.5 to 3.6 times the source's
+were seen). It is mirrored back.
 """
 
 from app.science.anatomy import (
@@ -15,10 +16,14 @@ from app.science.anatomy import (
     mirrored_notice,
     mirrored_skeleton,
     segment_lengths,
+    tilts_deg,
+    turned_over_skeleton,
+    upright_notice,
 )
 from app.science.retargeting.joint_map import JointMap
 from app.science.retargeting.legs import has_ball, has_legs
 from app.science.rig import RigMotion
+from app.science.rotations import FloatArray
 
 _LOWEST_RATIO, _HIGHEST_RATIO = 0.5, 2.0
 _LOWEST_STEP_M = 0.02
@@ -26,11 +31,26 @@ _LOWEST_STATURE_M, _HIGHEST_STATURE_M = 0.5, 2.6
 
 
 def checked_skeleton(
-    motion: RigMotion, joint_map: JointMap
+    motion: RigMotion, joint_map: JointMap, *, names_map: JointMap | None = None
 ) -> tuple[RigMotion, tuple[Notice, ...]]:
-    """Return a file's movement with left and right as people have them, and notices on it."""
-    votes = _votes(motion, joint_map)
+    """Return a file's movement upright, with left and right as people have them, and notices.
+
+    Args:
+        motion: as read from the file.
+        joint_map: body joint -> joint of its rig.
+        names_map: the map that follows from the joints' names, where `joint_map` is somebody's own:
+            only what the file calls left can be mirrored back. A map of one's own that exchanges
+            the sides is refused with the walk (`sides_notice`).
+    """
     notices: list[Notice] = []
+    upright = upright_notice(tilts_deg(_places(motion, joint_map)))
+    if upright is not None:
+        notices.append(upright)
+    if upright is not None and upright.action == "mended":
+        at_rest, _ = motion.rig.rest_world()
+        places = {part: at_rest[[motion.rig.index(name)]] for part, name in joint_map.items()}
+        motion = turned_over_skeleton(motion, rest_is_upright=not upright_notice(tilts_deg(places)))
+    votes = _votes(motion, joint_map if names_map is None else names_map)
     if votes.is_mirrored:
         notices.append(mirrored_notice(_shares(votes), "more than 20 %"))
         motion = mirrored_skeleton(motion)
@@ -51,14 +71,18 @@ def sides_notice(motion: RigMotion, joint_map: JointMap) -> Notice | None:
         "The joint map exchanges left and right: the avatar would face backwards.",
         _shares(votes),
         "more than 20 %",
-        "Exchange left and right in the map.",
+        "Exchange left and right in the map. If the map is right, the file has left-handed axes:"
+        " export it with right-handed ones.",
     )
 
 
 def _votes(motion: RigMotion, joint_map: JointMap) -> Handedness:
+    return handedness_of(_places(motion, joint_map))
+
+
+def _places(motion: RigMotion, joint_map: JointMap) -> dict[str, FloatArray]:
     positions, _ = motion.world()
-    places = {part: positions[:, motion.rig.index(name)] for part, name in joint_map.items()}
-    return handedness_of(places)
+    return {part: positions[:, motion.rig.index(name)] for part, name in joint_map.items()}
 
 
 def _shares(votes: Handedness) -> str:

@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 
 from app.adapters.captures.reader import read_capture
-from app.science.anatomy import mirrored_bodies, mirrored_markers
+from app.science.anatomy import (
+    mirrored_bodies,
+    mirrored_markers,
+    turned_over_bodies,
+    turned_over_markers,
+)
 from app.science.fitting import FitError, Fitted, fit_skeleton
 from app.science.rig import BodyMotion, MarkerMotion
 from app.science.rotations import geodesic_angle
@@ -61,12 +66,34 @@ def test_mirrored_bodies_on_the_trunk_are_mirrored_back() -> None:
     np.testing.assert_allclose(there.motion.rig.offsets_m, here.motion.rig.offsets_m, atol=1e-9)
 
 
+@pytest.mark.parametrize("name", _CAPTURES)
+def test_a_real_capture_upside_down_is_turned_over(shared_data: Path, name: str) -> None:
+    """Each capture in a world whose y points down gives the same body as captured; it is said."""
+    path = shared_data / "motion" / name
+    motion = read_capture(path.read_bytes(), name=path.name).motion
+    assert isinstance(motion, BodyMotion | MarkerMotion)
+    over = (
+        turned_over_bodies(motion)
+        if isinstance(motion, BodyMotion)
+        else turned_over_markers(motion)
+    )
+    there, here = fit_skeleton(over), fit_skeleton(motion)
+    assert here.notices == ()
+    assert [(notice.rule, notice.action) for notice in there.notices] == [("upright", "mended")]
+    np.testing.assert_allclose(there.motion.rig.offsets_m, here.motion.rig.offsets_m, atol=1e-9)
+    assert float(geodesic_angle(there.motion.rotations, here.motion.rotations).max()) < 1e-6
+
+
 @pytest.mark.parametrize(
     ("pairs", "told"),
     [
         ([("LFWT", "LBWT"), ("RFWT", "RBWT")], "hip centres would lie above it"),
         ([("LFWT", "RFWT"), ("LBWT", "RBWT")], "the knees are swapped against the pelvis"),
         ([("LSHO", "RSHO")], "the shoulders are swapped against the pelvis"),
+        (
+            [("LANK", "RANK"), ("LHEE", "RHEE"), ("LTOE", "RTOE")],
+            "the feet are swapped against the pelvis",
+        ),
         ([("LTOE", "LHEE"), ("RTOE", "RHEE")], "The feet point backwards"),
     ],
 )

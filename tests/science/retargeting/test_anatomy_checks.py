@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.adapters.captures.axes import turned_rig_motion
 from app.adapters.captures.reader import read_capture_file
-from app.science.anatomy import mirrored_skeleton
+from app.science.anatomy import mirrored_skeleton, turned_over_skeleton
 from app.science.retargeting.anatomy_checks import checked_skeleton, step_height_notice
 from app.science.retargeting.joint_map import propose_joint_map
 from app.science.retargeting.pipeline import Retargeted, retarget_motion
@@ -78,6 +79,33 @@ def test_a_mirrored_skeleton_is_mirrored_back(shared_data: Path, name: str) -> N
     np.testing.assert_allclose(back.rig.offsets_m, motion.rig.offsets_m)
     np.testing.assert_allclose(back.rotations, motion.rotations)
     np.testing.assert_allclose(back.root_positions_m, motion.root_positions_m)
+
+
+@pytest.mark.parametrize("rest_is_upright", [True, False])
+def test_a_walk_upside_down_is_turned_over(*, rest_is_upright: bool) -> None:
+    """A walk on its head, its root turned or all its axes, becomes what it was, and it is said."""
+    walk = made_walk(own_body(1.75)).motion
+    there = turned_over_skeleton(walk, rest_is_upright=rest_is_upright)
+    back, notices = checked_skeleton(there, SAME)
+    assert [(one.rule, one.action) for one in notices] == [("upright", "mended")]
+    np.testing.assert_allclose(back.world()[0], walk.world()[0], atol=1e-9)
+    assert checked_skeleton(walk, SAME) == (walk, ())
+    both, told = checked_skeleton(mirrored_skeleton(there), SAME)
+    assert [one.rule for one in told] == ["upright", "mirrored"]
+    np.testing.assert_allclose(
+        np.linalg.norm(np.diff(both.world()[0], axis=1), axis=-1),
+        np.linalg.norm(np.diff(walk.world()[0], axis=1), axis=-1),
+        atol=1e-9,
+    )
+
+
+def test_a_walk_with_another_axis_up_is_named() -> None:
+    """A walk whose z axis is up but was read as y lies on its back: that is noted, with --up."""
+    walk = made_walk(own_body(1.75)).motion
+    lying, notices = checked_skeleton(turned_rig_motion(walk, "z"), SAME)
+    assert [(one.rule, one.action) for one in notices] == [("upright", "noted")]
+    assert "--up" in notices[0].remedy
+    assert lying.frame_count == walk.frame_count
 
 
 @pytest.mark.parametrize("name", ["cmu_asfamc/02_01.amc", "bvh_toolbox/walk01.bvh"])

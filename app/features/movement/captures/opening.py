@@ -119,7 +119,7 @@ def _with_skeleton(capture: Capture) -> Opened:
         fitted = fit_skeleton(capture.motion)
     except FitError as error:
         return Opened(capture, None, None, str(error))
-    return Opened(capture, fitted.motion, fitted, None, fitted.notices)
+    return Opened(capture, fitted.motion, fitted, None, (*capture.notices, *fitted.notices))
 
 
 @dataclass(frozen=True)

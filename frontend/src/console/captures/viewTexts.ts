@@ -78,6 +78,7 @@ export const captureViewEn = {
   "anatomy.rule.length": "A length does not fit the rest of the body.",
   "anatomy.rule.toes": "The feet have no toes.",
   "anatomy.rule.step_height": "Steps are not as high as the legs allow.",
+  "anatomy.rule.upright": "The body lies or is upside down.",
   "anatomy.rule.unit": "The file names no unit of length.",
   "anatomy.action.mended": "It was corrected.",
   "anatomy.action.refused": "The result cannot be used.",
@@ -95,6 +96,8 @@ export const captureViewEn = {
     "Steps are measured where such a foot has its ball. Map the toes if the skeleton has them.",
   "anatomy.remedy.step_height":
     "Check which joints are mapped to feet and toes, and the axes of the capture.",
+  "anatomy.remedy.upright":
+    "If the person stands, choose the upward axis below. A capture that is upside down throughout was turned over.",
   "anatomy.remedy.unit": "If the person has another size, choose the unit below.",
   "conventions.guessed": "Check the guessed settings",
   "conventions.guessed.body":
@@ -200,6 +203,7 @@ export const captureViewDe: Readonly<Record<keyof typeof captureViewEn, string>>
   "anatomy.rule.length": "Eine Länge passt nicht zum übrigen Körper.",
   "anatomy.rule.toes": "Die Füße haben keine Zehen.",
   "anatomy.rule.step_height": "Die Schritte sind nicht so hoch, wie es die Beine erwarten lassen.",
+  "anatomy.rule.upright": "Der Körper liegt oder steht auf dem Kopf.",
   "anatomy.rule.unit": "Die Datei nennt keine Längeneinheit.",
   "anatomy.action.mended": "Das wurde korrigiert.",
   "anatomy.action.refused": "Das Ergebnis ist nicht verwendbar.",
@@ -217,6 +221,8 @@ export const captureViewDe: Readonly<Record<keyof typeof captureViewEn, string>>
     "Schritte werden dort gemessen, wo ein solcher Fuß seinen Ballen hat. Ordnen Sie die Zehen zu, falls das Skelett welche hat.",
   "anatomy.remedy.step_height":
     "Prüfen Sie, welche Gelenke Füßen und Zehen zugeordnet sind, und die Achsen der Aufnahme.",
+  "anatomy.remedy.upright":
+    "Steht die Person, wählen Sie unten die nach oben zeigende Achse. Eine Aufnahme, die durchgehend auf dem Kopf stand, wurde umgedreht.",
   "anatomy.remedy.unit": "Ist die Person anders groß, wählen Sie unten die Einheit.",
   "conventions.guessed": "Prüfen Sie die geratenen Angaben",
   "conventions.guessed.body":

@@ -7849,7 +7849,7 @@ export interface components {
              * Rule
              * @enum {string}
              */
-            readonly rule: "mirrored" | "pelvis" | "sides" | "length" | "toes" | "step_height" | "unit";
+            readonly rule: "mirrored" | "pelvis" | "sides" | "length" | "toes" | "step_height" | "unit" | "upright";
             /** Valid */
             readonly valid: string;
             /** Value */

@@ -52,6 +52,17 @@ def test_a_curved_walk_gets_its_own_path() -> None:
     np.testing.assert_allclose(entry.path.points_m[[0, -1]], walk.xy_m[[0, -1]], atol=0.01)
 
 
+@pytest.mark.parametrize("turning_deg", [30.0, 45.0, 75.0])
+def test_a_slightly_curved_walk_gets_its_own_path(turning_deg: float) -> None:
+    """An arc that is 1 to 7 % longer than its chord has its own turning, not that of the chord."""
+    turning_rad = np.radians(turning_deg)
+    (walk,) = walks_of(_track(_arc(4.0, turning_rad)))
+    entry = _entry(walk)
+    assert isinstance(entry, PlannedWalk)
+    assert entry.is_own_path
+    assert entry.dependencies[TURNING] * entry.path.length_m == pytest.approx(turning_rad, rel=0.06)
+
+
 @pytest.mark.parametrize("sway_m", [0.0, 0.03])
 def test_a_straight_walk_keeps_the_planned_path(sway_m: float) -> None:
     """The sway of strides, 3 cm to either side, does not make a straight walk a curved one."""
