@@ -26,6 +26,7 @@ from app.features.movement.live import LiveTracking
 from app.features.movement.tuning import TuningDesk, TuningQueue
 from app.features.movement.walking import FitQueue, PredictionQueue
 from app.features.people.accounts import RefusedSignIns, ensure_admin
+from app.features.record.demo import DemoRunner
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
 from app.features.record.tryout import TryoutRunner
 from app.features.results.analysis import Drawings
@@ -61,6 +62,7 @@ PARTS: tuple[PartMaker, ...] = (
     ExportQueue.of,
     StorageMeter.of,
     TryoutRunner.of,
+    DemoRunner.of,
     RefusedSignIns.of,
 )
 """The features' long-lived parts, started in this order and stopped in reverse."""

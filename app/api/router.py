@@ -30,9 +30,11 @@ from app.features.record.alarms.endpoints import router as alarms
 from app.features.record.calibrations.endpoints import router as calibrations
 from app.features.record.cockpit import router as watching
 from app.features.record.cockpit.endpoints import router as sessions
+from app.features.record.demo.endpoints import router as demo
 from app.features.record.devices.endpoints import router as devices
 from app.features.record.headset.endpoints import router as headset
 from app.features.record.headset.form_endpoints import router as headset_forms
+from app.features.record.lab_state.endpoints import router as lab_state
 from app.features.record.ledger.endpoints import router as participants
 from app.features.record.poses.endpoints import router as poses
 from app.features.record.preflight.endpoints import router as preflight
@@ -128,6 +130,8 @@ def _routes() -> tuple[BaseRoute, ...]:
             replays,
             storage,
             tryout,
+            demo,
+            lab_state,
             imports,
             preregistrations,
         ),

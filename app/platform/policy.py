@@ -42,6 +42,7 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/storage": DESIGNERS,
     # Studies: their protocols, orders and progress.
     "GET /api/studies": LAB,
+    "GET /api/lab": LAB,
     "POST /api/studies": DESIGNERS,
     "GET /api/studies/{key}": LAB,
     "GET /api/studies/{key}/sessions": LAB,
@@ -51,6 +52,10 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/studies/{key}/tryout": DESIGNERS,
     "GET /api/tryout": DESIGNERS,
     "DELETE /api/tryout": DESIGNERS,
+    # A study of its own with simulated people, loaded and removed as a whole.
+    "GET /api/demo": DESIGNERS,
+    "POST /api/demo": DESIGNERS,
+    "DELETE /api/demo": DESIGNERS,
     "POST /api/studies/{key}/versions": DESIGNERS,
     "POST /api/studies/{key}/archive": DESIGNERS,
     "POST /api/studies/{key}/restore": DESIGNERS,

@@ -28,7 +28,7 @@ STOPPED = "The scripted participant was stopped."
 def main() -> int:
     """Rehearse; return 1 if the rehearsal failed."""
     plan = plan_from(json.loads(sys.stdin.readline()))
-    threading.Thread(target=_end_with_the_starter, daemon=True).start()
+    end_with_the_starter()
     try:
         asyncio.run(_rehearse(plan))
     except asyncio.CancelledError:
@@ -94,10 +94,15 @@ def message_of(error: BaseException) -> str:
     return (str(error) or type(error).__name__)[:LONGEST_WORDS]
 
 
-def _end_with_the_starter() -> None:
-    while sys.stdin.readline():
-        pass
-    os._exit(1)
+def end_with_the_starter() -> None:
+    """Watch the standard input in a thread, and exit as soon as it is closed."""
+
+    def watch() -> None:
+        while sys.stdin.readline():
+            pass
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ stored version is parsed once and cached.
 from app.features.design.studies.service import (
     add_shipped,
     add_version,
+    create_study,
     faulty_studies,
     freeze,
     instrument_for,
@@ -23,6 +24,7 @@ __all__ = [
     "UsedInstrument",
     "add_shipped",
     "add_version",
+    "create_study",
     "faulty_studies",
     "freeze",
     "instrument_for",

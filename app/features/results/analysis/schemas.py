@@ -181,10 +181,28 @@ class GlanceView(BaseModel):
     way: Literal["rises", "falls"] | None
 
 
+class EffectView(BaseModel):
+    """The difference between the ends of the factor in one limb, in the measure's unit.
+
+    `low`, `high`: the 95 % interval of the mean difference; null if n is too small. `standardised`:
+    Cohen's d_av with the interval on the same scale; null where nothing varies.
+    """
+
+    limb: str
+    contrast: str
+    n: int
+    difference: float
+    low: float | None
+    high: float | None
+    standardised: float | None
+    standardised_low: float | None
+    standardised_high: float | None
+
+
 class MeasureView(BaseModel):
     """The test results of one measure; `left_out` says which participants are left out, and why.
 
-    `glance` has a row for each limb whose latencies were compared.
+    `glance` has a row for each limb whose latencies were compared, and so has `effects`.
     """
 
     key: str
@@ -194,6 +212,7 @@ class MeasureView(BaseModel):
     n: int
     left_out: list[str]
     glance: list[GlanceView]
+    effects: list[EffectView]
     results: list[ResultView]
 
 

@@ -10,6 +10,7 @@ export type FigureGroup = FigureEntry["group"];
 export type FilterChoices = Schemas["FilterChoices"];
 export type Statistics = Schemas["StatisticsView"];
 export type Glance = Schemas["GlanceView"];
+export type Effect = Schemas["EffectView"];
 export type Measure = Schemas["MeasureView"];
 export type Result = Schemas["ResultView"];
 

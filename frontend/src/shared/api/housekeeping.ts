@@ -1,4 +1,4 @@
-/** Requests for downloads, disk space and scripted participants. */
+/** Requests for downloads, disk space, scripted participants, the demo lab and the lab's state. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type { DataKind } from "./types";
@@ -9,6 +9,10 @@ export type StorageRoom = Schemas["StorageView"];
 export type StoragePart = Schemas["PartView"];
 export type StudyRoom = Schemas["StudyRoom"];
 export type Tryout = Schemas["TryoutView"];
+export type Demo = Schemas["DemoView"];
+export type LabState = Schemas["LabState"];
+export type SessionBrief = Schemas["SessionBrief"];
+export type Attention = Schemas["Attention"];
 
 const one = (id: string) => ({ params: { path: { export_id: id } } });
 
@@ -47,4 +51,19 @@ export const tryouts = {
       }),
     ),
   stop: () => answer<Tryout>(server.DELETE("/api/tryout")),
+};
+
+/** The study of the demo lab (`DEMO_KEY` in `demo_study.py`). */
+export const DEMO_KEY = "demo-lab";
+
+export const demo = {
+  get: () => answer<Demo>(server.GET("/api/demo")),
+  load: (language: string) => answer<Demo>(server.POST("/api/demo", { body: { language } })),
+  remove: () => answer<{ readonly rows: number }>(server.DELETE("/api/demo")),
+};
+
+/** `since`: where the reader's day begins, ISO 8601. */
+export const lab = {
+  get: (since: string) =>
+    answer<LabState>(server.GET("/api/lab", { params: { query: { since } } })),
 };

@@ -745,6 +745,34 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/demo": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Demo
+         * @description Return how many simulated people of the demo lab are through.
+         */
+        readonly get: operations["get_demo_api_demo_get"];
+        readonly put?: never;
+        /**
+         * Post Demo
+         * @description Load the demo lab: a study of its own, and twelve simulated people who visit it.
+         */
+        readonly post: operations["post_demo_api_demo_post"];
+        /**
+         * Delete Demo
+         * @description Remove the demo lab: its study, its sessions and everything that they recorded.
+         */
+        readonly delete: operations["delete_demo_api_demo_delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/devices/pair": {
         readonly parameters: {
             readonly query?: never;
@@ -1165,6 +1193,26 @@ export interface paths {
          * @description Return the role, note and expiry of an invitation, given its token.
          */
         readonly post: operations["post_look_api_invitations_look_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/lab": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Lab
+         * @description Return the progress of the caller's studies, today's sessions and what needs attention.
+         */
+        readonly get: operations["get_lab_api_lab_get"];
+        readonly put?: never;
+        readonly post?: never;
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -3531,6 +3579,40 @@ export interface components {
             readonly shortfalls: readonly components["schemas"]["Shortfall"][];
         };
         /**
+         * Attention
+         * @description A session that somebody should look at, and why.
+         */
+        readonly Attention: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /**
+             * Concern
+             * @enum {string}
+             */
+            readonly concern: "left_open" | "never_started" | "not_valid" | "ended_early";
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "people" | "simulated" | "test" | "expert";
+            /** Participant Code */
+            readonly participant_code: string;
+            /** Session Id */
+            readonly session_id: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "planned" | "active" | "completed" | "aborted" | "withdrawn";
+            /** Study Key */
+            readonly study_key: string;
+            /** Study Title */
+            readonly study_title: string;
+        };
+        /**
          * AuditCheckView
          * @description The result of verifying the audit trail; `broken_at` is the first entry that was altered.
          *
@@ -5291,6 +5373,46 @@ export interface components {
             readonly version: number;
         };
         /**
+         * DemoRemoved
+         * @description What was removed: `rows` of the database, all of them of simulated people.
+         */
+        readonly DemoRemoved: {
+            /** Rows */
+            readonly rows: number;
+        };
+        /**
+         * DemoView
+         * @description The demo lab: how many of its simulated people are through.
+         *
+         *     `state`: `loading` while they are on their way; `stopped` if some are missing, because the
+         *     server stopped or somebody ended it; `failed` if they could not go on, with the reason.
+         */
+        readonly DemoView: {
+            /** Completed */
+            readonly completed: number;
+            /** Message */
+            readonly message: string | null;
+            /** People */
+            readonly people: number;
+            /** Remedy */
+            readonly remedy: string | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "absent" | "loading" | "loaded" | "stopped" | "failed";
+            /** Study Key */
+            readonly study_key: string;
+        };
+        /**
+         * DemoWish
+         * @description A request to load the demo lab, with the language in which its people answer.
+         */
+        readonly DemoWish: {
+            /** Language */
+            readonly language: string;
+        };
+        /**
          * DeviationView
          * @description A deviation of what was done from what was declared, or a note (`is_note`).
          */
@@ -5564,6 +5686,33 @@ export interface components {
             readonly changes: readonly components["schemas"]["ChangeRequest"][];
             /** Yaml */
             readonly yaml: string;
+        };
+        /**
+         * EffectView
+         * @description The difference between the ends of the factor in one limb, in the measure's unit.
+         *
+         *     `low`, `high`: the 95 % interval of the mean difference; null if n is too small. `standardised`:
+         *     Cohen's d_av with the interval on the same scale; null where nothing varies.
+         */
+        readonly EffectView: {
+            /** Contrast */
+            readonly contrast: string;
+            /** Difference */
+            readonly difference: number;
+            /** High */
+            readonly high: number | null;
+            /** Limb */
+            readonly limb: string;
+            /** Low */
+            readonly low: number | null;
+            /** N */
+            readonly n: number;
+            /** Standardised */
+            readonly standardised: number | null;
+            /** Standardised High */
+            readonly standardised_high: number | null;
+            /** Standardised Low */
+            readonly standardised_low: number | null;
         };
         /**
          * ErasedImported
@@ -6962,6 +7111,18 @@ export interface components {
             readonly shared_drive?: components["schemas"]["DriveFile"] | null;
         };
         /**
+         * LabState
+         * @description The lab at a glance. `today`: sessions since the given time, the newest first.
+         */
+        readonly LabState: {
+            /** Attention */
+            readonly attention: readonly components["schemas"]["Attention"][];
+            /** Studies */
+            readonly studies: readonly components["schemas"]["Progress"][];
+            /** Today */
+            readonly today: readonly components["schemas"]["SessionBrief"][];
+        };
+        /**
          * LanguageChoice
          * @description A request to switch to another language.
          */
@@ -7355,11 +7516,13 @@ export interface components {
          * MeasureView
          * @description The test results of one measure; `left_out` says which participants are left out, and why.
          *
-         *     `glance` has a row for each limb whose latencies were compared.
+         *     `glance` has a row for each limb whose latencies were compared, and so has `effects`.
          */
         readonly MeasureView: {
             /** About */
             readonly about: string;
+            /** Effects */
+            readonly effects: readonly components["schemas"]["EffectView"][];
             /** Glance */
             readonly glance: readonly components["schemas"]["GlanceView"][];
             /** Key */
@@ -8686,6 +8849,24 @@ export interface components {
             readonly value?: unknown;
         };
         /**
+         * Progress
+         * @description How far a study is: valid completed participants of those that are planned.
+         *
+         *     `planned`: the preregistered number, else the places of the ledger.
+         */
+        readonly Progress: {
+            /** Completed */
+            readonly completed: number;
+            /** Planned */
+            readonly planned: number;
+            /** Preregistered */
+            readonly preregistered: boolean;
+            /** Running */
+            readonly running: number;
+            /** Study Key */
+            readonly study_key: string;
+        };
+        /**
          * ProgressView
          * @description The progress of a fit; `maps_total` is 0 while it is unknown.
          */
@@ -9438,6 +9619,35 @@ export interface components {
             readonly standing_hips_m: number;
             /** Stature M */
             readonly stature_m: number;
+        };
+        /**
+         * SessionBrief
+         * @description A session as a line of a list.
+         */
+        readonly SessionBrief: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "people" | "simulated" | "test" | "expert";
+            /** Participant Code */
+            readonly participant_code: string;
+            /** Session Id */
+            readonly session_id: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "planned" | "active" | "completed" | "aborted" | "withdrawn";
+            /** Study Key */
+            readonly study_key: string;
+            /** Study Title */
+            readonly study_title: string;
         };
         /**
          * SessionReceipt
@@ -13422,6 +13632,124 @@ export interface operations {
             };
         };
     };
+    readonly get_demo_api_demo_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["DemoView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_demo_api_demo_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["DemoWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 202: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["DemoView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_demo_api_demo_delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["DemoRemoved"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly post_pair_api_devices_pair_post: {
         readonly parameters: {
             readonly query?: never;
@@ -14465,6 +14793,47 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["InvitationLook"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_lab_api_lab_get: {
+        readonly parameters: {
+            readonly query?: {
+                /** @description Where the reader's day begins. */
+                readonly since?: string | null;
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["LabState"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

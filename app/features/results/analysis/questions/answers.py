@@ -10,6 +10,7 @@ from itertools import chain
 from app.features.results.analysis.figures.drawing import limb_note
 from app.features.results.analysis.material import Material, n_not_valid
 from app.features.results.analysis.questions.descriptives import descriptive
+from app.features.results.analysis.questions.effects import effects_of
 from app.features.results.analysis.questions.limb_tests import limb_results
 from app.features.results.analysis.questions.measures import (
     LATENCY_FACTOR,
@@ -128,6 +129,7 @@ def _compared(
             n=n,
             left_out=[*out, *measure.missing()],
             glance=_glance(measure, results),
+            effects=list(effects_of(measure)),
             results=[one.view() for one in results],
         )
 
@@ -184,5 +186,6 @@ def _explored(
                 n=n,
                 left_out=out,
                 glance=[],
+                effects=[],
                 results=views,
             )

@@ -132,7 +132,7 @@ def _rates() -> ErrorRates | None:
 
 def mean_words(values: FloatArray) -> str:
     """Return the mean with its interval in brackets, or the mean alone if n is too small."""
-    found = _found(values)
+    found = mean_interval(values)
     if found is None:
         return number(float(values.mean())) if values.size else number(None)
     return f"{number(found.estimate)} {_ends(found)}"
@@ -140,11 +140,12 @@ def mean_words(values: FloatArray) -> str:
 
 def interval_words(values: FloatArray) -> str:
     """Return the interval of the mean, or a dash if n is too small."""
-    found = _found(values)
+    found = mean_interval(values)
     return number(None) if found is None else _ends(found)
 
 
-def _found(values: FloatArray) -> Interval | None:
+def mean_interval(values: FloatArray) -> Interval | None:
+    """Return the bootstrap interval of the mean; None if n is too small or nothing varies."""
     rng = np.random.default_rng(SEED)
     try:
         return bootstrap_interval(values, mean_of, rng=rng, resamples=DRAWS)

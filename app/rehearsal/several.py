@@ -1,0 +1,64 @@
+"""Rehearse with several people for another program, some of them at the same time.
+
+Input is one line of JSON: `{"at_once": n, "plans": [...]}`, each plan with the fields of
+`RehearsalPlan`. Output is lines of JSON: `{"person": number, "session": id}` when a session begins,
+`{"person": number, "through": true}` when it is over, counted from 1, and at the end
+`{"done": true}` or `{"error": message}`. If one fails, the others end their sessions. It exits
+immediately when its input is closed, because then the program that started it has ended.
+"""
+
+import asyncio
+import contextlib
+import json
+import signal
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+from app.rehearsal.__main__ import emit, end_session, end_with_the_starter, message_of, plan_from
+from app.rehearsal.cast import perform
+from app.rehearsal.rehearse import RehearsalPlan, assembled
+
+
+def main() -> int:
+    """Rehearse with everybody; return 1 if a rehearsal failed or was stopped."""
+    order: dict[str, Any] = json.loads(sys.stdin.readline())
+    plans = [plan_from(plan) for plan in order["plans"]]
+    end_with_the_starter()
+    try:
+        asyncio.run(rehearse_several(plans, int(order["at_once"])))
+    except asyncio.CancelledError:
+        return 1
+    except Exception as error:  # noqa: BLE001  # every error is reported
+        emit(error=message_of(error))
+        return 1
+    emit(done=True)
+    return 0
+
+
+async def rehearse_several(plans: Sequence[RehearsalPlan], at_once: int) -> None:
+    """Run one rehearsal a plan, at most `at_once` at the same time."""
+    playing = asyncio.current_task()
+    assert playing is not None  # noqa: S101 - this is one
+    # Windows has no such signal: there a termination takes effect immediately.
+    with contextlib.suppress(NotImplementedError):
+        asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, playing.cancel)
+    places = asyncio.Semaphore(at_once)
+
+    async def visit(person: int, plan: RehearsalPlan) -> None:
+        async with places, assembled(plan, lambda _: None) as cast:
+            emit(person=person, session=cast.operator.session_id)
+            try:
+                await perform(cast)
+            except BaseException:
+                await asyncio.shield(end_session(cast.operator))
+                raise
+        emit(person=person, through=True)
+
+    async with asyncio.TaskGroup() as group:
+        for person, plan in enumerate(plans, start=1):
+            group.create_task(visit(person, plan))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,87 @@
+"""Tests of the demo lab: its study, its refusals, and its removal as a whole."""
+
+import time
+
+import pytest
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.database import Base
+from app.features.design.studies import create_study, newest_version, protocol_of, study_by_key
+from app.features.record.demo.demo_study import DEMO_KEY, PEOPLE, PHASE_S, demo_code, demo_yaml
+from app.features.record.demo.removal import remove_study
+from app.features.record.demo.runner import DemoRunner
+from app.models import Account
+from app.platform.access import Caller
+from app.protocol import TIMED_KINDS, compile_plan, sequences
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
+from tests.features.lab import Lab, error, ok
+
+WITHIN_S = 60.0
+NOBODY = "http://127.0.0.1:9"
+
+
+def _rows(db: Session) -> dict[str, int]:
+    tables = Base.metadata.sorted_tables
+    counts = {one.name: db.scalar(select(func.count()).select_from(one)) or 0 for one in tables}
+    return {name: count for name, count in counts.items() if count}
+
+
+def test_every_phase_of_the_demo_lab_lasts_ten_seconds(fresh_lab: Lab) -> None:
+    """The demo study is the shipped one in phases of 10 s, and its orders suit its people."""
+    with fresh_lab.database.writing() as db:
+        build_study(db)
+        create_study(db, demo_yaml(), NOW)
+        protocol = protocol_of(newest_version(db, study_by_key(db, DEMO_KEY)))
+        shipped = protocol_of(newest_version(db, study_by_key(db, STUDY)))
+    orders = sequences(protocol)
+    timed = [step for step in compile_plan(protocol, orders[0]) if step.kind in TIMED_KINDS]
+    assert {step.duration_s for step in timed} == {PHASE_S}
+    assert [one.latency_ms for one in protocol.conditions] == [
+        one.latency_ms for one in shipped.conditions
+    ]
+    assert PEOPLE % len(orders) == 0
+    assert len({demo_code(number) for number in range(1, PEOPLE + 1)}) == PEOPLE
+
+
+def test_removing_a_study_removes_its_rows_and_no_others(fresh_lab: Lab) -> None:
+    """What two sessions of the demo lab stored is gone afterwards, and everything else is there."""
+    with fresh_lab.database.writing() as db:
+        build_study(db)
+        build_session(db, SessionSpec("P-0001"))
+        before = _rows(db)
+        create_study(db, demo_yaml(), NOW)
+        for number in (1, 2):
+            spec = SessionSpec(demo_code(number), kind="simulated")
+            build_session(db, spec, study=DEMO_KEY)
+        filled = _rows(db)
+        removed = remove_study(db, study_by_key(db, DEMO_KEY))
+        db.flush()
+        assert _rows(db) == before
+    assert removed == sum(filled.values()) - sum(before.values())
+    assert filled["answers"] > before["answers"]
+
+
+@pytest.mark.one_engine
+def test_a_demo_lab_that_cannot_be_loaded_says_why_and_is_removed(fresh_lab: Lab) -> None:
+    """Without a reachable server the demo lab fails with a reason; removing it leaves no study."""
+    lab = fresh_lab
+    assert ok(lab.operator.get("/api/demo"))["state"] == "absent"
+    error(lab.operator.delete("/api/demo"), 404, "not_found")
+    error(lab.operator.post("/api/demo", json={"language": "fr"}), 422, "invalid_input")
+    with lab.database.reading() as db:
+        account = db.query(Account).filter_by(username="admin").one()
+    caller = Caller(account.id, account.username, account.role)
+    runner = lab.context.part(DemoRunner)
+    assert runner.load(caller, "en", NOBODY).state == "loading"
+    error(lab.operator.post("/api/demo", json={"language": "en"}), 409, "conflict")
+    give_up_s = time.monotonic() + WITHIN_S
+    while (view := ok(lab.operator.get("/api/demo")))["state"] == "loading":
+        assert time.monotonic() < give_up_s
+        time.sleep(0.05)
+    assert view["state"] == "failed"
+    assert NOBODY in view["message"]
+    assert view["remedy"]
+    assert ok(lab.operator.delete("/api/demo"))["rows"] > 0
+    assert ok(lab.operator.get("/api/demo"))["state"] == "absent"
+    error(lab.operator.get(f"/api/studies/{DEMO_KEY}"), 404, "not_found")
