@@ -30,6 +30,11 @@ class Experimenter:
         """Open a tab of a study."""
         self.page.goto(f"{self.url}/#/studies/{study}/{tab}")
 
+    def choose_german(self) -> None:
+        """Switch the console from English to German in the account menu."""
+        self.page.get_by_role("button", name="admin", exact=True).click()
+        self.page.get_by_role("menuitem", name="Deutsch").click()
+
     def create_session(self) -> None:
         """Create a session for a participant and open it."""
         self.page.get_by_role("button", name="New session").first.click()

@@ -53,7 +53,7 @@ def test_figures_are_filtered_by_the_url_and_saved(
     assert "SIMULATED DATA" in text
     assert "SIM-0002" not in text
 
-    page.get_by_role("tab", name="Statistics").click()
+    page.get_by_role("link", name="Statistics", exact=True).click()
     # Participants are of one page, the kind of data is of all of them, also when it is reloaded.
     assert "participant=" not in page.url
     page.reload()
@@ -72,7 +72,7 @@ def test_figures_are_filtered_by_the_url_and_saved(
     agency_row.get_by_role("button").click()
     expect(page.get_by_role("heading", name="Agency", exact=True)).to_be_in_viewport()
 
-    page.get_by_role("tab", name="Preregistration").click()
+    page.get_by_role("link", name="Preregistration", exact=True).click()
     expect(page.get_by_text("n = 3 of 12 planned")).to_be_visible(timeout=PATIENCE_MS)
     expect(page.get_by_text("Fewer than 60 frames per second")).to_be_visible()
     assert axe(page) == []

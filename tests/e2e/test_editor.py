@@ -228,7 +228,7 @@ def test_editor_and_library_are_accessible(
     for section in (*sections, "Places"):
         writer.open_section(section)
         assert axe(page) == [], section
-    page.get_by_role("button", name="Deutsch").click()
+    writer.choose_german()
     expect(page.get_by_role("tab", name="Orte und Farben")).to_be_visible()
     screenshot(page, f"editor-de-{scheme}")
     for tab in ("", "scoring", "try", "file"):

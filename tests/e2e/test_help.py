@@ -68,7 +68,7 @@ def test_the_help_menu_is_german(
     page = page_factory((1280, 800))
     experimenter = Experimenter(page, running_server.url)
     experimenter.log_in()
-    page.get_by_role("button", name="Deutsch").click()
+    experimenter.choose_german()
     page.get_by_role("button", name="Hilfe").click()
     page.get_by_role("menuitem", name="Hilfeseiten").click()
     expect(page.get_by_text("Die Hilfeseiten gibt es nur auf Englisch.")).to_be_visible()

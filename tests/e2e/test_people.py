@@ -51,9 +51,9 @@ def test_an_invited_operator_never_sees_the_condition(
     assert "join" not in operator.url
     operator.goto(f"{lab.server.url}/#/studies/{STUDY}")
     expect(operator.get_by_text("This study is blinded for you")).to_be_visible()
-    expect(operator.get_by_role("tab", name="Ledger")).to_be_visible()
+    expect(operator.get_by_role("link", name="Ledger")).to_be_visible()
     for tab in ("Dashboard", "Export", "Protocol", "Versions"):
-        expect(operator.get_by_role("tab", name=tab)).to_have_count(0)
+        expect(operator.get_by_role("link", name=tab)).to_have_count(0)
     console = Experimenter(operator, lab.server.url)
     console.create_session()
     expect(operator.get_by_text("Order hidden (blinded)")).to_be_visible()

@@ -1,5 +1,5 @@
 /**
- * The console: the sign-in page, or a header and the page that the address names.
+ * The console: the sign-in page, or the frame with the page that the address names.
  *
  * When a sign-in expires, the page it was used on is hidden rather than discarded: the same person
  * can continue what they were writing, anybody else starts with a fresh page.
@@ -7,11 +7,11 @@
 import { Center, Loader } from "@mantine/core";
 import type { Account } from "@shared/api/types";
 import { Activity, type JSX, Suspense, useEffect } from "react";
-import { Router } from "wouter";
+import { Router, useLocation } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
 import { useAccount, useExpiredAccount, useExpiryDetection, useSignInChecks } from "./account";
 import { Failure } from "./errors";
-import { Header } from "./Header";
+import { Frame } from "./frame/Frame";
 import { useHelpKey } from "./help/useHelpKey";
 import { useTexts } from "./i18n";
 import { JoinPage } from "./pages/join/JoinPage";
@@ -62,7 +62,7 @@ function useOpenDialogsHidden(hidden: boolean): void {
   }, [hidden]);
 }
 
-/** The signed-in console: its header, the page of the address, and background tasks. */
+/** The signed-in console: its frame, the page of the address, and background tasks. */
 function Shell({ account }: { readonly account: Account }): JSX.Element {
   const { t } = useTexts();
   useExpiryDetection();
@@ -73,15 +73,30 @@ function Shell({ account }: { readonly account: Account }): JSX.Element {
       <button type="button" className={classes.skip} onClick={focusMain}>
         {t("app.skip")}
       </button>
-      <Header account={account} />
-      <main id="main" tabIndex={-1}>
+      <Frame account={account}>
         <Suspense fallback={<Waiting />}>
           <Routes account={account} />
         </Suspense>
-      </main>
+      </Frame>
+      <FocusOnPage />
       {may(account.role, "tryout") && <TryoutBar />}
     </Router>
   );
+}
+
+/**
+ * With every page the focus goes to it, unless something on it has the focus already: otherwise Tab
+ * would go through the whole navigation again.
+ */
+function FocusOnPage(): null {
+  const [address] = useLocation();
+  // biome-ignore lint/correctness/useExhaustiveDependencies: whenever the address changes
+  useEffect(() => {
+    const focused = document.activeElement;
+    const isFree = focused === null || focused === document.body || focused.closest("nav") !== null;
+    if (isFree) document.getElementById("main")?.focus({ preventScroll: true });
+  }, [address]);
+  return null;
 }
 
 const Waiting = (): JSX.Element => (

@@ -112,6 +112,7 @@ export const RULES = {
     ],
   },
   storage: { roles: DESIGNERS, routes: ["GET /api/storage"] },
+  demo: { roles: DESIGNERS, routes: ["GET /api/demo", "POST /api/demo", "DELETE /api/demo"] },
   tryout: {
     roles: DESIGNERS,
     routes: ["POST /api/studies/{key}/tryout", "GET /api/tryout", "DELETE /api/tryout"],

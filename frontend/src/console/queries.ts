@@ -2,7 +2,7 @@
 import { analysis, type FigureGroup, type Filter } from "@shared/api/analysis";
 import { drafts, instruments, versions } from "@shared/api/drafts";
 import { network, sessions, studies } from "@shared/api/endpoints";
-import { exports, storageRoom, tryouts } from "@shared/api/housekeeping";
+import { demo, exports, lab, storageRoom, tryouts } from "@shared/api/housekeeping";
 import { type ImportMapping, imports } from "@shared/api/imports";
 import { type AuditFilter, audit, invitations, people } from "@shared/api/people";
 import { calibrations, consents, selfTests, suggestions } from "@shared/api/records";
@@ -183,6 +183,21 @@ export const storageQuery = queryOptions({
   queryFn: () => storageRoom.get(false),
   refetchInterval: 60_000,
 });
+
+/** Asked again while its simulated people are on their way. */
+export const demoQuery = queryOptions({
+  queryKey: ["demo"],
+  queryFn: demo.get,
+  refetchInterval: ({ state }) => (state.data?.state === "loading" ? 1000 : false),
+});
+
+/** `since`: where the reader's day begins. */
+export const labQuery = (since: string) =>
+  queryOptions({
+    queryKey: ["studies", "", "lab", since],
+    queryFn: () => lab.get(since),
+    refetchInterval: 15_000,
+  });
 
 export const tryoutQuery = queryOptions({
   queryKey: ["tryout"],

@@ -22,7 +22,9 @@ import { safetyDe, safetyEn } from "../cockpit/step/safetyTexts";
 import { downloadsDe, downloadsEn } from "../downloads/texts";
 import { fieldsDe, fieldsEn } from "../editor/fields/texts";
 import { editorDe, editorEn } from "../editor/texts";
+import { frameDe, frameEn } from "../frame/frameTexts";
 import { helpPagesDe, helpPagesEn } from "../help/helpTexts";
+import { homeDe, homeEn } from "../home/texts";
 import { importsDe, importsEn } from "../imports/texts";
 import { instrumentsDe, instrumentsEn } from "../instruments/texts";
 import { consentDe, consentEn } from "../pages/consent/texts";
@@ -91,6 +93,8 @@ const allEn = {
   ...storageEn,
   ...tourEn,
   ...helpPagesEn,
+  ...frameEn,
+  ...homeEn,
   ...analysisEn,
   ...importsEn,
   ...preregistrationEn,
@@ -136,6 +140,8 @@ const allDe = {
   ...storageDe,
   ...tourDe,
   ...helpPagesDe,
+  ...frameDe,
+  ...homeDe,
   ...analysisDe,
   ...importsDe,
   ...preregistrationDe,

@@ -1,15 +1,19 @@
-import { Button, Code, Text, Title } from "@mantine/core";
+/** The first page: what to try before the first session, then the state of the lab; the studies. */
+import { Button, Code, Progress, Text, Title } from "@mantine/core";
+import type { LabState as LabStateData } from "@shared/api/housekeeping";
 import type { StudySummary } from "@shared/api/types";
 import { day } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
+import { FirstSteps } from "../home/FirstSteps";
+import home from "../home/Home.module.css";
+import { LabState } from "../home/LabState";
 import { useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
-import { archivedQuery, studiesQuery } from "../queries";
+import { archivedQuery, labQuery, studiesQuery } from "../queries";
 import { EmptyState } from "../ui/EmptyState";
-import { KINDS } from "../ui/KindFilter";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import classes from "./Studies.module.css";
@@ -41,7 +45,7 @@ export function StudiesPage(): JSX.Element {
       <Loaded query={query}>
         {(studies) =>
           studies.length > 0 ? (
-            <Cards studies={studies} />
+            <Listed studies={studies} archived={archived} />
           ) : archived ? (
             <EmptyState icon="document" title={t("versions.noneArchived")}>
               {t("versions.noneArchived.body")}
@@ -53,6 +57,33 @@ export function StudiesPage(): JSX.Element {
       </Loaded>
     </>
   );
+}
+
+interface ListedProps {
+  readonly studies: readonly StudySummary[];
+  readonly archived: boolean;
+}
+
+/** Before the first session: what can be tried. Afterwards: the state of the lab. */
+function Listed({ studies, archived }: ListedProps): JSX.Element {
+  const [since] = useState(midnight);
+  const state = useQuery({ ...labQuery(since), enabled: !archived }).data;
+  const nobodyYet = studies.every(({ session_counts }) =>
+    Object.values(session_counts).every((count) => count === 0),
+  );
+  return (
+    <>
+      {!archived && nobodyYet && <FirstSteps listed={studies} />}
+      {!archived && !nobodyYet && state !== undefined && <LabState state={state} />}
+      <Cards studies={studies} progress={state?.studies ?? []} />
+    </>
+  );
+}
+
+/** The beginning of the reader's day. */
+function midnight(): string {
+  const now = new Date();
+  return new Date(now.getFullYear(), now.getMonth(), now.getDate()).toISOString();
 }
 
 function NoStudies(): JSX.Element {
@@ -67,20 +98,38 @@ function NoStudies(): JSX.Element {
   );
 }
 
-function Cards({ studies }: { readonly studies: readonly StudySummary[] }): JSX.Element {
+type StudyProgress = LabStateData["studies"][number];
+
+interface CardsProps {
+  readonly studies: readonly StudySummary[];
+  readonly progress: readonly StudyProgress[];
+}
+
+function Cards({ studies, progress }: CardsProps): JSX.Element {
   return (
     <ul className={classes.cards}>
       {studies.map((study) => (
         <li key={study.key}>
-          <Card study={study} />
+          <Card
+            study={study}
+            progress={progress.find(({ study_key }) => study_key === study.key)}
+          />
         </li>
       ))}
     </ul>
   );
 }
 
-function Card({ study }: { readonly study: StudySummary }): JSX.Element {
+interface CardProps {
+  readonly study: StudySummary;
+  readonly progress: StudyProgress | undefined;
+}
+
+function Card({ study, progress }: CardProps): JSX.Element {
   const { t, language } = useTexts();
+  const completed = progress?.completed ?? 0;
+  const planned = progress?.planned ?? 0;
+  const counts = study.session_counts;
   return (
     <Link href={`/studies/${study.key}`} className={classes.card ?? ""}>
       <div>
@@ -95,14 +144,28 @@ function Card({ study }: { readonly study: StudySummary }): JSX.Element {
         </div>
       </div>
       <p className={classes.about}>{study.description}</p>
-      <dl className={`${classes.counts} numbers`}>
-        {KINDS.map((kind) => (
-          <div key={kind}>
-            <dt>{t(`kind.${kind}`)}</dt>
-            <dd>{study.session_counts[kind] ?? 0}</dd>
-          </div>
-        ))}
-      </dl>
+      <div className={`${home.progress} numbers`}>
+        <Progress
+          value={planned === 0 ? 0 : (100 * completed) / planned}
+          aria-label={t("home.progress", { completed, planned })}
+        />
+        <div className={home.progressText}>
+          <span>
+            {t(progress?.preregistered ? "home.progress.preregistered" : "home.progress", {
+              completed,
+              planned,
+            })}
+          </span>
+          <span>
+            {(progress?.running ?? 0) > 0
+              ? t("home.progress.running", { count: progress?.running ?? 0 })
+              : t("home.others", {
+                  simulated: counts["simulated"] ?? 0,
+                  test: counts["test"] ?? 0,
+                })}
+          </span>
+        </div>
+      </div>
     </Link>
   );
 }

@@ -1,4 +1,5 @@
 /** Which kind of session a study's pages show: kept in the address, and from page to page. */
+import { DEMO_KEY } from "@shared/api/housekeeping";
 import type { DataKind } from "@shared/api/types";
 import { useEffect } from "react";
 import { useLocation, useSearch } from "wouter";
@@ -11,19 +12,20 @@ const isKind = (text: string | null): text is DataKind => text !== null && KINDS
 const nameOf = (studyKey: string): string => `reembody.kind.${studyKey}`;
 
 /**
- * The kind that a study's pages show: the address's, else the one last shown in this browser tab,
+ * The kind that a study's pages show: the address's, else the one last shown in this browser,
  * else participants.
  */
 export function kindOf(studyKey: string, search: string): DataKind {
   const given = new URLSearchParams(search).get("kind");
   if (isKind(given)) return given;
-  const last = sessionStorage.getItem(nameOf(studyKey));
-  return isKind(last) ? last : "people";
+  const last = localStorage.getItem(nameOf(studyKey));
+  // The demo lab has simulated people only, and a page without data would be a poor welcome.
+  return isKind(last) ? last : studyKey === DEMO_KEY ? "simulated" : "people";
 }
 
 /** Remember a kind for the study's other pages. */
 export function useRememberedKind(studyKey: string, kind: DataKind): void {
-  useEffect(() => sessionStorage.setItem(nameOf(studyKey), kind), [studyKey, kind]);
+  useEffect(() => localStorage.setItem(nameOf(studyKey), kind), [studyKey, kind]);
 }
 
 /** The chosen kind, and how to choose another. */

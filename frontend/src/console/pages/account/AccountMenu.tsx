@@ -1,5 +1,5 @@
-/** Who is signed in, in which role, and the button for signing out. */
-import { Button, Menu } from "@mantine/core";
+/** Who is signed in, in which role: language, appearance, password, and signing out. */
+import { Button, Menu, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import type { Account } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
@@ -11,21 +11,37 @@ import { RoleBadge } from "../../ui/badges";
 import classes from "./AccountMenu.module.css";
 import { ChangePassword } from "./ChangePassword";
 
-export function AccountMenu({ account }: { readonly account: Account }): JSX.Element {
-  const { t } = useTexts();
+interface AccountMenuProps {
+  readonly account: Account;
+  /** Whether the user name stands on the button, or only its first letter. */
+  readonly named: boolean;
+}
+
+export function AccountMenu({ account, named }: AccountMenuProps): JSX.Element {
+  const { t, language, setLanguage } = useTexts();
+  const { setColorScheme } = useMantineColorScheme();
+  const scheme = useComputedColorScheme("light");
+  const other = scheme === "light" ? "dark" : "light";
+  const otherLanguage = language === "en" ? "de" : "en";
   const queries = useQueryClient();
   const [changing, change] = useDisclosure();
   return (
     <>
-      <Menu position="bottom-end" width={280} withInitialFocusPlaceholder={false}>
+      <Menu position="top-end" width={280} withInitialFocusPlaceholder={false}>
         <Menu.Target>
           <Button
             variant="subtle"
             color="gray"
             size="compact-sm"
-            rightSection={<Icon name="down" size={14} />}
+            aria-label={account.username}
+            title={t("app.signedInAs", {
+              name: account.username,
+              role: t(`role.${account.role}`),
+            })}
+            className={classes.button ?? ""}
+            {...(named && { rightSection: <Icon name="down" size={14} /> })}
           >
-            {account.username}
+            {named ? account.username : account.username.slice(0, 1).toUpperCase()}
           </Button>
         </Menu.Target>
         <Menu.Dropdown>
@@ -34,6 +50,20 @@ export function AccountMenu({ account }: { readonly account: Account }): JSX.Ele
             <RoleBadge role={account.role} />
             <span>{t(`role.${account.role}.may`)}</span>
           </div>
+          <Menu.Divider />
+          <Menu.Item
+            leftSection={<Icon name="talk" size={16} />}
+            lang={otherLanguage}
+            onClick={() => setLanguage(otherLanguage)}
+          >
+            {t("app.language")}
+          </Menu.Item>
+          <Menu.Item
+            leftSection={<Icon name={other === "dark" ? "moon" : "sun"} size={16} />}
+            onClick={() => setColorScheme(other)}
+          >
+            {t(`app.theme.${other}`)}
+          </Menu.Item>
           <Menu.Divider />
           <Menu.Item leftSection={<Icon name="key" size={16} />} onClick={change.open}>
             {t("password.change")}

@@ -1,6 +1,7 @@
-/** A line for every tested measure and task: what readers look for first. */
+/** A line for every tested measure and task, with its effect on one scale: what readers look for. */
 import { Title } from "@mantine/core";
-import type { Glance, Measure } from "@shared/api/analysis";
+import type { Effect, Glance, Measure } from "@shared/api/analysis";
+import { number } from "@shared/format";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
 import table from "../../ui/NumbersTable.module.css";
@@ -12,8 +13,8 @@ interface AtAGlanceProps {
 }
 
 const COLUMNS: Readonly<Record<Glance["factor"], readonly Key[]>> = {
-  latency: ["glance.measure", "glance.task", "glance.differ", "glance.first", "glance.trend"],
-  body: ["glance.measure", "glance.task", "glance.differ.bodies", "glance.pairs"],
+  latency: ["glance.differ", "glance.first", "glance.trend"],
+  body: ["glance.differ.bodies", "glance.pairs"],
 };
 const FACTORS = ["body", "latency"] as const;
 const TASKS: Readonly<Record<string, Key>> = {
@@ -22,14 +23,14 @@ const TASKS: Readonly<Record<string, Key>> = {
 };
 
 export function AtAGlance({ measures, onChoose }: AtAGlanceProps): JSX.Element | null {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   const of = (factor: Glance["factor"]) =>
     measures.filter(({ glance }) => glance[0]?.factor === factor);
   const factors = FACTORS.filter((factor) => of(factor).length > 0);
   if (factors.length === 0) return null;
   return (
     <section className={classes.measure} aria-labelledby="glance">
-      <Title order={2} id="glance" className={classes.heading ?? ""}>
+      <Title order={2} id="glance">
         {t("glance.title")}
       </Title>
       <p className={classes.about}>{t("glance.about")}</p>
@@ -39,6 +40,17 @@ export function AtAGlance({ measures, onChoose }: AtAGlanceProps): JSX.Element |
           <table className={`${table.table} ${classes.glance} numbers`}>
             <thead>
               <tr>
+                <th scope="col">{t("glance.measure")}</th>
+                <th scope="col">{t("glance.task")}</th>
+                <th scope="col" className={classes.effect}>
+                  {t("glance.effect", { contrast: contrastOf(of(factor)) })}
+                  <span className={`${classes.scale} ${classes.unit}`}>
+                    <span>−{number(reachOf(measures), language, 1)}</span>
+                    <span>0</span>
+                    <span>{number(reachOf(measures), language, 1)}</span>
+                  </span>
+                </th>
+                <th scope="col">{t("glance.difference")}</th>
                 {COLUMNS[factor].map((column) => (
                   <th key={column} scope="col">
                     {t(column)}
@@ -47,7 +59,12 @@ export function AtAGlance({ measures, onChoose }: AtAGlanceProps): JSX.Element |
               </tr>
             </thead>
             {of(factor).map((measure) => (
-              <Lines key={measure.key} measure={measure} onChoose={onChoose} />
+              <Lines
+                key={measure.key}
+                measure={measure}
+                reach={reachOf(measures)}
+                onChoose={onChoose}
+              />
             ))}
           </table>
         </div>
@@ -56,13 +73,28 @@ export function AtAGlance({ measures, onChoose }: AtAGlanceProps): JSX.Element |
   );
 }
 
+/** The ends that are compared, which are the same for all measures of a factor. */
+const contrastOf = (measures: readonly Measure[]): string =>
+  measures.flatMap(({ effects }) => effects)[0]?.contrast ?? "";
+
+/** The end of the scale, standard deviations: every interval fits, in whole steps. */
+function reachOf(measures: readonly Measure[]): number {
+  const ends = measures
+    .flatMap(({ effects }) => effects)
+    .flatMap((one) => [one.standardised, one.standardised_low, one.standardised_high])
+    .map((end) => Math.abs(end ?? 0));
+  return Math.max(1, Math.ceil(Math.max(0, ...ends)));
+}
+
 interface LinesProps {
   readonly measure: Measure;
+  readonly reach: number;
   readonly onChoose: (key: string) => void;
 }
 
-function Lines({ measure, onChoose }: LinesProps): JSX.Element {
-  const { t } = useTexts();
+function Lines({ measure, reach, onChoose }: LinesProps): JSX.Element {
+  const { t, language } = useTexts();
+  const effectOf = (limb: string) => measure.effects.find((one) => one.limb === limb);
   return (
     <tbody>
       {measure.glance.map((line, at) => (
@@ -75,6 +107,10 @@ function Lines({ measure, onChoose }: LinesProps): JSX.Element {
             </th>
           )}
           <td>{taskName(line, t)}</td>
+          <td className={classes.effect}>
+            <EffectMark effect={effectOf(line.limb)} reach={reach} />
+          </td>
+          <td>{differenceOf(effectOf(line.limb), measure.unit, language)}</td>
           <td>{line.differ ?? t("glance.untested")}</td>
           <td>{line.first === "" ? t("glance.none") : (line.first ?? t("glance.untested"))}</td>
           {line.factor === "latency" && <td>{trendOf(line, t)}</td>}
@@ -83,6 +119,50 @@ function Lines({ measure, onChoose }: LinesProps): JSX.Element {
     </tbody>
   );
 }
+
+const HEIGHT = 24;
+const WIDTH = 200;
+
+/** A point with its interval on the common scale; the numbers stand beside it. */
+function EffectMark({
+  effect,
+  reach,
+}: {
+  readonly effect: Effect | undefined;
+  readonly reach: number;
+}): JSX.Element | null {
+  const size = effect?.standardised ?? null;
+  if (effect === undefined || size === null) return null;
+  const x = (value: number) => (WIDTH * (value + reach)) / (2 * reach);
+  const { standardised_low: low, standardised_high: high } = effect;
+  const middle = HEIGHT / 2;
+  return (
+    <svg viewBox={`0 0 ${WIDTH} ${HEIGHT}`} preserveAspectRatio="none" aria-hidden="true">
+      <line x1={x(0)} x2={x(0)} y1={-4} y2={HEIGHT + 4} className={classes.zero} />
+      {low !== null && high !== null && (
+        <line
+          x1={x(low)}
+          x2={x(high)}
+          y1={middle}
+          y2={middle}
+          className={classes.interval}
+          vectorEffect="non-scaling-stroke"
+        />
+      )}
+      <ellipse cx={x(size)} cy={middle} rx={4} ry={5} className={classes.point} />
+    </svg>
+  );
+}
+
+function differenceOf(effect: Effect | undefined, unit: string, language: string): string {
+  if (effect === undefined) return "–";
+  const text = `${signed(effect.difference, language)} ${unit}`.trim();
+  if (effect.low === null || effect.high === null) return text;
+  return `${text} [${signed(effect.low, language)}, ${signed(effect.high, language)}]`;
+}
+
+const signed = (value: number, language: string): string =>
+  number(value, language, 2).replace("-", "−");
 
 function trendOf({ trend, way }: Glance, t: (key: Key) => string): string {
   if (trend === null) return t("glance.untested");

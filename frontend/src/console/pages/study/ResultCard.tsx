@@ -13,7 +13,7 @@ export function ResultCard({ result }: { readonly result: Result }): JSX.Element
   return (
     <article className={classes.result}>
       <div className={classes.head}>
-        <Title order={3} size="h5">
+        <Title order={4} size="h5">
           {result.title}
         </Title>
         {result.exploratory && (
@@ -33,15 +33,23 @@ export function ResultCard({ result }: { readonly result: Result }): JSX.Element
         <NumbersTable label={result.title} columns={result.columns} rows={result.rows} />
       )}
       {result.method !== "" && (
-        <p className={classes.method}>
-          {result.method} <cite>{result.source}</cite>
-        </p>
+        <details className={classes.method}>
+          <summary>{t("statistics.method")}</summary>
+          <p>
+            {result.method} <cite>{result.source}</cite>
+          </p>
+        </details>
       )}
     </article>
   );
 }
 
-function CopyButton({ text }: { readonly text: string }): JSX.Element {
+interface CopyButtonProps {
+  readonly text: string;
+  readonly label?: string;
+}
+
+export function CopyButton({ text, label }: CopyButtonProps): JSX.Element {
   const { t } = useTexts();
   const [copied, setCopied] = useState(false);
   const copy = async (): Promise<void> => {
@@ -57,7 +65,9 @@ function CopyButton({ text }: { readonly text: string }): JSX.Element {
       leftSection={<Icon name={copied ? "check" : "document"} size={14} />}
       onClick={() => void copy()}
     >
-      <span aria-live="polite">{t(copied ? "statistics.copied" : "statistics.copy")}</span>
+      <span aria-live="polite">
+        {copied ? t("statistics.copied") : (label ?? t("statistics.copy"))}
+      </span>
     </Button>
   );
 }

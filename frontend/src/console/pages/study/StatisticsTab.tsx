@@ -1,10 +1,11 @@
 /** The study's questions, answered by tests; nothing here can be filtered. */
-import { Title } from "@mantine/core";
+import { Button, Title } from "@mantine/core";
 import type { Measure, Statistics } from "@shared/api/analysis";
 import type { StudyDetail } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
-import type { JSX } from "react";
+import { type JSX, useEffect } from "react";
 import { useTexts } from "../../i18n";
 import { statisticsQuery } from "../../queries";
 import { useKind } from "../../ui/chosenKind";
@@ -12,7 +13,7 @@ import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter, sessionCounts } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import { AtAGlance } from "./AtAGlance";
-import { ResultCard } from "./ResultCard";
+import { CopyButton, ResultCard } from "./ResultCard";
 import classes from "./StatisticsTab.module.css";
 import page from "./StudyPage.module.css";
 
@@ -40,6 +41,7 @@ export function StatisticsTab({ study }: { readonly study: StudyDetail }): JSX.E
 function Answers({ found }: { readonly found: Statistics }): JSX.Element {
   const { t } = useTexts();
   const alpha = found.alpha.toString();
+  useOpenInPrint();
   return (
     <>
       {found.simulated && (
@@ -64,57 +66,98 @@ function Answers({ found }: { readonly found: Statistics }): JSX.Element {
           {t("statistics.empty.body")}
         </EmptyState>
       ) : (
-        <div className={classes.layout}>
-          <Contents measures={found.measures} />
-          <div>
-            <AtAGlance measures={found.measures} onChoose={goTo} />
-            {found.measures.map((measure) => (
-              <MeasureSection key={measure.key} measure={measure} />
-            ))}
+        <>
+          <AtAGlance measures={found.measures} onChoose={open} />
+          <div className={classes.tools}>
+            <Title order={2} className={classes.toolsTitle ?? ""}>
+              {t("statistics.measures")}
+            </Title>
+            <CopyButton
+              text={found.measures.flatMap(apaLines).join("\n")}
+              label={t("statistics.copyAll")}
+            />
+            <Button size="compact-xs" variant="subtle" onClick={() => setEvery(true)}>
+              {t("statistics.expand")}
+            </Button>
+            <Button size="compact-xs" variant="subtle" onClick={() => setEvery(false)}>
+              {t("statistics.collapse")}
+            </Button>
           </div>
-        </div>
+          {found.measures.map((measure) => (
+            <MeasureCard key={measure.key} measure={measure} />
+          ))}
+        </>
       )}
     </>
   );
 }
 
-function Contents({ measures }: { readonly measures: readonly Measure[] }): JSX.Element {
-  const { t } = useTexts();
-  return (
-    <nav className={classes.contents} aria-label={t("statistics.contents")}>
-      {measures.map(({ key, title }) => (
-        // Buttons rather than links, because the part after # is the page's route.
-        <button type="button" key={key} onClick={() => goTo(key)}>
-          {title}
-        </button>
-      ))}
-    </nav>
-  );
+const idOf = (key: string): string => `measure-${key}`;
+
+const apaLines = ({ results }: Measure): readonly string[] =>
+  results.map(({ apa }) => apa).filter((apa) => apa !== "");
+
+/** Open a measure's card and go to it. */
+function open(key: string): void {
+  const card = document.getElementById(idOf(key));
+  if (!(card instanceof HTMLDetailsElement)) return;
+  card.open = true;
+  card.scrollIntoView();
+  card.querySelector("summary")?.focus({ preventScroll: true });
 }
 
-const headingOf = (key: string): string => `measure-${key}`;
+function setEvery(opened: boolean): void {
+  for (const card of document.querySelectorAll<HTMLDetailsElement>(`.${classes.card}`)) {
+    card.open = opened;
+  }
+}
 
-const goTo = (key: string): void => document.getElementById(headingOf(key))?.scrollIntoView();
+/** On paper nothing is behind a click: what was collapsed is opened, and closed again afterwards. */
+function useOpenInPrint(): void {
+  useEffect(() => {
+    let opened: HTMLDetailsElement[] = [];
+    const before = () => {
+      opened = [...document.querySelectorAll<HTMLDetailsElement>("main details:not([open])")];
+      for (const card of opened) card.open = true;
+    };
+    const after = () => {
+      for (const card of opened) card.open = false;
+      opened = [];
+    };
+    window.addEventListener("beforeprint", before);
+    window.addEventListener("afterprint", after);
+    return () => {
+      window.removeEventListener("beforeprint", before);
+      window.removeEventListener("afterprint", after);
+    };
+  }, []);
+}
 
-function MeasureSection({ measure }: { readonly measure: Measure }): JSX.Element {
+function MeasureCard({ measure }: { readonly measure: Measure }): JSX.Element {
   const { t } = useTexts();
   return (
-    <section className={classes.measure} aria-labelledby={headingOf(measure.key)}>
-      <Title order={2} id={headingOf(measure.key)} className={classes.heading ?? ""}>
-        {measure.title}
-      </Title>
-      <p className={classes.about}>
-        {t("statistics.n", { count: measure.n })}
-        {measure.about !== "" && ` · ${measure.about}`}
-      </p>
-      <p className={classes.about}>
-        {measure.left_out.length === 0
-          ? t("statistics.nobody")
-          : `${t("statistics.leftOut")}: ${measure.left_out.join("; ")}.`}
-      </p>
-      {measure.results.map((result) => (
-        <ResultCard key={result.key} result={result} />
-      ))}
-    </section>
+    <details id={idOf(measure.key)} className={classes.card}>
+      <summary className={classes.summary}>
+        <Icon name="forward" size={16} />
+        <Title order={3} size="h4">
+          {measure.title}
+        </Title>
+        <span className={classes.brief}>
+          {t("statistics.n", { count: measure.n })}
+          {` · ${t("statistics.results", { count: measure.results.length })}`}
+        </span>
+      </summary>
+      <div className={classes.inside}>
+        {measure.about !== "" && <p className={classes.about}>{measure.about}</p>}
+        <p className={classes.about}>
+          {measure.left_out.length === 0
+            ? t("statistics.nobody")
+            : `${t("statistics.leftOut")}: ${measure.left_out.join("; ")}.`}
+        </p>
+        {measure.results.map((result) => (
+          <ResultCard key={result.key} result={result} />
+        ))}
+      </div>
+    </details>
   );
 }

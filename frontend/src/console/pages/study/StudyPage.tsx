@@ -1,16 +1,18 @@
 /** One study: its design, its ledger, its sessions, their results, and its files. */
-import { Button, Tabs, Title } from "@mantine/core";
+import { Button, Title } from "@mantine/core";
 import { versions } from "@shared/api/drafts";
 import type { StudyDetail } from "@shared/api/types";
 import { inLanguage } from "@shared/text";
-import { Icon, type IconName } from "@shared/ui/Icon";
+import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { Link, useLocation } from "wouter";
+import { Link } from "wouter";
+import { useAccount } from "../../account";
 import { Failure } from "../../errors";
+import { isAllowed, SECTIONS, type SectionName } from "../../frame/places";
 import { useTexts } from "../../i18n";
-import { type Permission, usePermissions } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import { PreregistrationTab } from "../../preregistration/PreregistrationTab";
 import { studyQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
@@ -29,36 +31,7 @@ import classes from "./StudyPage.module.css";
 import { SuggestionsTab } from "./SuggestionsTab";
 import { VersionsTab } from "./VersionsTab";
 
-const TABS = [
-  "overview",
-  "ledger",
-  "sessions",
-  "participants",
-  "dashboard",
-  "statistics",
-  "preregistration",
-  "export",
-  "protocol",
-  "versions",
-  "suggestions",
-] as const;
-type Tab = (typeof TABS)[number];
-
-const ICONS: Readonly<Record<Tab, IconName>> = {
-  overview: "info",
-  ledger: "list",
-  sessions: "headset",
-  participants: "people",
-  dashboard: "chart",
-  statistics: "form",
-  preregistration: "lock",
-  export: "download",
-  protocol: "document",
-  versions: "redo",
-  suggestions: "talk",
-};
-
-const CONTENT: Readonly<Record<Tab, (props: { study: StudyDetail }) => JSX.Element>> = {
+const CONTENT: Readonly<Record<SectionName, (props: { study: StudyDetail }) => JSX.Element>> = {
   overview: Overview,
   ledger: LedgerTab,
   sessions: SessionsTab,
@@ -72,16 +45,8 @@ const CONTENT: Readonly<Record<Tab, (props: { study: StudyDetail }) => JSX.Eleme
   suggestions: SuggestionsTab,
 };
 
-/** The permission required for a tab; all others are for everybody. */
-const NEEDS: Readonly<Partial<Record<Tab, Permission>>> = {
-  participants: "rights",
-  dashboard: "compare",
-  statistics: "compare",
-  preregistration: "compare",
-  export: "compare",
-  protocol: "compare",
-  versions: "compare",
-};
+type StudySection = (typeof SECTIONS)[number];
+const OVERVIEW: StudySection = SECTIONS[0];
 
 interface StudyPageProps {
   readonly studyKey: string;
@@ -89,76 +54,65 @@ interface StudyPageProps {
 }
 
 export function StudyPage({ studyKey, tab }: StudyPageProps): JSX.Element {
-  const { t } = useTexts();
   return (
-    <>
-      <Link href="/" className={classes.crumbs ?? ""}>
-        <Icon name="back" size={16} />
-        {t("app.studies")}
-      </Link>
-      <Loaded query={useQuery(studyQuery(studyKey))}>
-        {(study) => <Study study={study} tab={TABS.find((name) => name === tab) ?? "overview"} />}
-      </Loaded>
-    </>
+    <Loaded query={useQuery(studyQuery(studyKey))}>
+      {(study) => (
+        <Study
+          study={study}
+          section={SECTIONS.find(({ section }) => section === tab) ?? OVERVIEW}
+        />
+      )}
+    </Loaded>
   );
 }
 
-function Study({ study, tab }: { readonly study: StudyDetail; readonly tab: Tab }): JSX.Element {
-  const { t } = useTexts();
-  const [, navigate] = useLocation();
-  const can = usePermissions();
-  const isTheirs = (name: Tab): boolean => {
-    const act = NEEDS[name];
-    return act === undefined || can(act);
-  };
-  const Content = isTheirs(tab) ? CONTENT[tab] : NoPermission;
+interface StudyProps {
+  readonly study: StudyDetail;
+  readonly section: StudySection;
+}
+
+function Study({ study, section }: StudyProps): JSX.Element {
+  const role = useAccount().data?.role;
+  const isTheirs = role !== undefined && isAllowed(section, role);
+  const Content = isTheirs ? CONTENT[section.section] : NoPermission;
   return (
     <>
-      <Head study={study} />
+      <Head study={study} section={section} />
       {study.archived_at !== null && <Archived studyKey={study.key} />}
-      <Tabs
-        value={tab}
-        onChange={(value) => navigate(`/studies/${study.key}/${value ?? "overview"}`)}
-        keepMounted={false}
-        classNames={{ tab: classes.tab ?? "" }}
-      >
-        <Tabs.List>
-          {TABS.filter(isTheirs).map((name) => (
-            <Tabs.Tab key={name} value={name} leftSection={<Icon name={ICONS[name]} size={17} />}>
-              {t(
-                name === "versions" || name === "suggestions" ? `${name}.tab` : `study.tab.${name}`,
-              )}
-            </Tabs.Tab>
-          ))}
-        </Tabs.List>
-        <Tabs.Panel value={tab} className={classes.panel ?? ""}>
-          <Content study={study} />
-        </Tabs.Panel>
-      </Tabs>
+      <Content study={study} />
     </>
   );
 }
 
-function Head({ study }: { readonly study: StudyDetail }): JSX.Element {
+/** The overview is titled with the study, every other page with its own name and the study above. */
+function Head({ study, section }: StudyProps): JSX.Element {
   const { t, language } = useTexts();
   const [joining, setJoining] = useState(false);
   const can = usePermissions();
   const title = study.protocol === null ? study.title : inLanguage(study.protocol.title, language);
-  useTitle(title);
+  const isOverview = section.section === "overview";
+  useTitle(isOverview ? title : `${t(section.name)} · ${title}`);
   return (
     <div className={classes.head}>
       <div>
-        <Title order={1}>{title}</Title>
-        <div className={classes.meta}>
-          <span>{study.key}</span>
-          <span>{t("study.version", { version: study.version })}</span>
-          <span>
-            <Icon name={study.frozen ? "lock" : "document"} size={15} />
-            {t(study.frozen ? "study.frozenLong" : "study.openLong")}
-          </span>
-        </div>
+        {!isOverview && (
+          <Link href={`/studies/${study.key}/overview`} className={classes.crumbs ?? ""}>
+            {title}
+          </Link>
+        )}
+        <Title order={1}>{isOverview ? title : t(section.name)}</Title>
+        {isOverview && (
+          <div className={classes.meta}>
+            <span>{study.key}</span>
+            <span>{t("study.version", { version: study.version })}</span>
+            <span>
+              <Icon name={study.frozen ? "lock" : "document"} size={15} />
+              {t(study.frozen ? "study.frozenLong" : "study.openLong")}
+            </span>
+          </div>
+        )}
       </div>
-      {can("run") && (
+      {can("run") && section.group === "run" && (
         <Button
           leftSection={<Icon name="add" size={18} />}
           disabled={study.archived_at !== null}

@@ -1,0 +1,34 @@
+/** The study whose sections the sidebar shows: the open one, else the one that was open last. */
+import { useQuery } from "@tanstack/react-query";
+import { useEffect } from "react";
+import { sessionQuery, studiesQuery } from "../queries";
+import { studyIn } from "./places";
+
+const REMEMBERED = "reembody.study";
+
+export interface CurrentStudy {
+  readonly key: string;
+  /** Null until the list of studies has arrived, or where the study is archived. */
+  readonly title: string | null;
+}
+
+/**
+ * The current study at an address; null while none is known.
+ *
+ * A session belongs to its study, which its page has requested anyway.
+ */
+export function useCurrentStudy(address: string): CurrentStudy | null {
+  const listed = useQuery(studiesQuery).data;
+  const id = /^\/sessions\/([^/?]+)/.exec(address)?.[1];
+  const session = useQuery({ ...sessionQuery(id ?? ""), enabled: false }).data;
+  const open = studyIn(address) ?? session?.study_key ?? null;
+  useEffect(() => {
+    if (open !== null) localStorage.setItem(REMEMBERED, open);
+  }, [open]);
+  const last = localStorage.getItem(REMEMBERED);
+  const known = (key: string | null): boolean =>
+    key !== null && (listed === undefined || listed.some((study) => study.key === key));
+  const key = open ?? (known(last) ? last : (listed?.[0]?.key ?? null));
+  if (key === null) return null;
+  return { key, title: listed?.find((study) => study.key === key)?.title ?? null };
+}

@@ -1,0 +1,118 @@
+/** What a newcomer can do in one click, before anybody has taken part. */
+import { Button, Title } from "@mantine/core";
+import { studies } from "@shared/api/endpoints";
+import type { StudySummary } from "@shared/api/types";
+import { Icon, type IconName } from "@shared/ui/Icon";
+import { useMutation, useQueryClient } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { useLocation } from "wouter";
+import { Failure } from "../errors";
+import { type Key, useTexts } from "../i18n";
+import { type Permission, usePermissions } from "../permissions";
+import { studyQuery } from "../queries";
+import { choose } from "../tour/HelpMenu";
+import { opened, useActOnScreen } from "../tour/onScreen";
+import { studyLanguage, useStartTryout } from "../tour/TryIt";
+import { useLoadDemo } from "./demo";
+import classes from "./Home.module.css";
+
+export function FirstSteps({ listed }: { readonly listed: readonly StudySummary[] }): JSX.Element {
+  const { t, language } = useTexts();
+  const [, navigate] = useLocation();
+  const queries = useQueryClient();
+  const demo = useLoadDemo();
+  const start = useStartTryout();
+  const act = useActOnScreen();
+  const study = choose(
+    "/",
+    listed.map(({ key }) => key),
+  );
+  const watch = useMutation({
+    mutationFn: async (studyKey: string) => {
+      const found = await queries.fetchQuery({
+        ...studyQuery(studyKey),
+        queryFn: () => studies.get(studyKey),
+      });
+      return start.mutateAsync({ studyKey, language: studyLanguage(found.languages, language) });
+    },
+  });
+  return (
+    <section aria-labelledby="first-steps">
+      <Title order={2} id="first-steps">
+        {t("home.first")}
+      </Title>
+      <p className={classes.lead}>{t("home.first.lead")}</p>
+      <div className={classes.steps}>
+        <Step
+          step="home.demo"
+          icon="chart"
+          permission="demo"
+          isFirst
+          isBusy={demo.isPending}
+          error={demo.error}
+          onChoose={() => demo.mutate()}
+        />
+        <Step
+          step="home.watch"
+          icon="play"
+          permission="tryout"
+          isBusy={watch.isPending}
+          error={watch.error}
+          onChoose={study === null ? undefined : () => watch.mutate(study)}
+        />
+        <Step
+          step="home.act"
+          icon="headset"
+          permission="run"
+          isBusy={act.isPending}
+          error={act.error}
+          onChoose={
+            study === null ? undefined : () => act.mutate({ studyKey: study, tab: opened() })
+          }
+        />
+        <Step
+          step="home.create"
+          icon="add"
+          permission="design"
+          isBusy={false}
+          error={null}
+          onChoose={() => navigate("/new")}
+        />
+      </div>
+    </section>
+  );
+}
+
+interface StepProps {
+  readonly step: "home.demo" | "home.watch" | "home.act" | "home.create";
+  readonly icon: IconName;
+  readonly permission: Permission;
+  readonly isFirst?: boolean;
+  readonly isBusy: boolean;
+  readonly error: Error | null;
+  /** Missing where there is no study to do it with. */
+  readonly onChoose: (() => void) | undefined;
+}
+
+function Step(props: StepProps): JSX.Element | null {
+  const { step, icon, permission, isFirst = false, isBusy, error, onChoose } = props;
+  const { t } = useTexts();
+  const can = usePermissions();
+  if (!can(permission)) return null;
+  const body: Key = `${step}.body`;
+  return (
+    <div className={classes.step}>
+      <p>{t(body)}</p>
+      {error !== null && <Failure error={error} />}
+      <Button
+        variant={isFirst ? "filled" : "light"}
+        loading={isBusy}
+        disabled={onChoose === undefined}
+        leftSection={<Icon name={icon} size={18} />}
+        onClick={onChoose}
+      >
+        {t(step)}
+      </Button>
+    </div>
+  );
+}

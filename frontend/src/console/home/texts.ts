@@ -1,0 +1,87 @@
+/** Texts of the first page: the first steps, the state of the lab, and the demo lab. */
+export const homeEn = {
+  "home.first": "Look around first",
+  "home.first.lead": "Nobody has taken part yet. Nothing you do here can harm later data.",
+  "home.demo": "Load the demo lab",
+  "home.demo.body":
+    "Twelve simulated people visit a study in phases of 10 s. Figures appear in about half a minute, and you remove all of it with one click.",
+  "home.watch": "Watch a session live",
+  "home.watch.body":
+    "A scripted participant goes through a whole session at four times the pace. You sit at the operator's desk.",
+  "home.act": "Try it as a participant",
+  "home.act.body":
+    "Take the participant's place with mouse and keyboard. No headset needed; a new tab opens.",
+  "home.create": "Create a study",
+  "home.create.body":
+    "From a template or an own file. Every problem is shown with its line while you write.",
+  "home.today": "Today's sessions",
+  "home.today.none": "No session today.",
+  "home.attention": "Needs attention",
+  "home.attention.none": "Nothing. Every session of the last days was finished and counts.",
+  "home.concern.left_open": "still open",
+  "home.concern.never_started": "never started",
+  "home.concern.not_valid": "completed, but does not count",
+  "home.concern.ended_early": "ended early",
+  "home.progress": "{{completed}} of {{planned}} participants",
+  "home.progress.preregistered": "{{completed}} of {{planned}} preregistered participants",
+  "home.progress.running_one": "{{count}} session running",
+  "home.progress.running_other": "{{count}} sessions running",
+  "home.others": "{{simulated}} simulated, {{test}} tests",
+  "demo.label": "Demo lab",
+  "demo.loading": "Simulated people are on their way: {{completed}} of {{people}}",
+  "demo.loaded":
+    "Simulated people, made up by the rehearsal's generator. They say nothing about people.",
+  "demo.stopped": "{{completed}} of {{people}} simulated people are there.",
+  "demo.failed": "The simulated people could not go on: {{message}}",
+  "demo.results": "See the figures",
+  "demo.more": "Load the rest",
+  "demo.remove": "Remove the demo lab",
+  "demo.remove.title": "Remove the demo lab?",
+  "demo.remove.body":
+    "Its study is deleted with all of its simulated sessions. Other studies are not touched. You can load it again.",
+  "demo.removed": "The demo lab was removed",
+} as const;
+
+export const homeDe: Readonly<Record<keyof typeof homeEn, string>> = {
+  "home.first": "Erst einmal umsehen",
+  "home.first.lead":
+    "Noch hat niemand teilgenommen. Nichts, was Sie hier tun, kann späteren Daten schaden.",
+  "home.demo": "Demo-Labor laden",
+  "home.demo.body":
+    "Zwölf simulierte Personen besuchen eine Studie in Phasen von 10 s. Nach etwa einer halben Minute gibt es Abbildungen; ein Klick entfernt alles wieder.",
+  "home.watch": "Eine Sitzung live ansehen",
+  "home.watch.body":
+    "Eine simulierte Person geht in vierfachem Tempo durch eine ganze Sitzung. Sie sitzen am Platz der Versuchsleitung.",
+  "home.act": "Selbst ausprobieren",
+  "home.act.body":
+    "Mit Maus und Tastatur an der Stelle der Versuchsperson, ohne Headset; ein neuer Tab öffnet sich.",
+  "home.create": "Eine Studie anlegen",
+  "home.create.body":
+    "Aus einer Vorlage oder einer eigenen Datei. Jedes Problem wird beim Schreiben mit seiner Zeile gezeigt.",
+  "home.today": "Sitzungen von heute",
+  "home.today.none": "Heute keine Sitzung.",
+  "home.attention": "Braucht Aufmerksamkeit",
+  "home.attention.none": "Nichts. Jede Sitzung der letzten Tage ist beendet und zählt.",
+  "home.concern.left_open": "noch offen",
+  "home.concern.never_started": "nie begonnen",
+  "home.concern.not_valid": "abgeschlossen, zählt aber nicht",
+  "home.concern.ended_early": "vorzeitig beendet",
+  "home.progress": "{{completed}} von {{planned}} Teilnehmenden",
+  "home.progress.preregistered": "{{completed}} von {{planned}} präregistrierten Teilnehmenden",
+  "home.progress.running_one": "{{count}} Sitzung läuft",
+  "home.progress.running_other": "{{count}} Sitzungen laufen",
+  "home.others": "{{simulated}} simuliert, {{test}} Tests",
+  "demo.label": "Demo-Labor",
+  "demo.loading": "Simulierte Personen sind unterwegs: {{completed}} von {{people}}",
+  "demo.loaded":
+    "Simulierte Personen aus dem Generator der Probe. Sie sagen nichts über Menschen aus.",
+  "demo.stopped": "{{completed}} von {{people}} simulierten Personen sind da.",
+  "demo.failed": "Die simulierten Personen konnten nicht weitermachen: {{message}}",
+  "demo.results": "Zu den Abbildungen",
+  "demo.more": "Die übrigen laden",
+  "demo.remove": "Demo-Labor entfernen",
+  "demo.remove.title": "Demo-Labor entfernen?",
+  "demo.remove.body":
+    "Seine Studie wird mit allen simulierten Sitzungen gelöscht. Andere Studien bleiben unberührt. Sie können es wieder laden.",
+  "demo.removed": "Das Demo-Labor wurde entfernt",
+};
