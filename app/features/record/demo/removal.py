@@ -34,7 +34,7 @@ def _refers(table: Table, belonging: dict[str, ColumnElement[bool]]) -> list[Col
 
     Of a key of several columns the first one decides: it is the row's owner in all our tables.
     """
-    conditions = []
+    conditions: list[ColumnElement[bool]] = []
     for constraint in table.foreign_key_constraints:
         first = constraint.elements[0]
         parent = first.column.table

@@ -228,10 +228,15 @@ def n_not_valid(sessions: pd.DataFrame) -> int:
     return int(((sessions["status"] == "completed") & ~sessions["valid"]).sum())
 
 
-def read_material(db: Session, study_key: str, kind: DashboardKind) -> Material:
-    """Read every table immediately; raise NotFound for an unknown study."""
+def read_material(
+    db: Session, study_key: str, kind: DashboardKind, names: Collection[str] = READ.keys()
+) -> Material:
+    """Read these tables immediately, by default all; raise NotFound for an unknown study.
+
+    The others are read on first use, for which the transaction has to be open still.
+    """
     material = _Reader(study_key, kind, db).material()
-    for name in READ:
+    for name in names:
         material.tables[name]
     return material
 

@@ -68,7 +68,10 @@ def post_export(
         study_key=study.key,
         kind=request.kind,
         session_id=request.session_id,
-        file_name=archive_name(study.key, what, now.date()),
+        movement=request.movement,
+        file_name=archive_name(
+            study.key, what if request.movement else f"{what}_tables", now.date()
+        ),
         asked_at=now,
         folder=context.part(ExportQueue).folder,
     )

@@ -162,6 +162,7 @@ class ExportQueue(Part):
             study_key=job.study_key,
             kind=job.kind,
             session_id=job.session_id,
+            movement=job.movement,
             now=job.asked_at,
             to=job.path,
             meter=job.meter.path,

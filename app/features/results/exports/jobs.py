@@ -29,6 +29,7 @@ class Job:
     study_key: str
     kind: Kind
     session_id: str | None
+    movement: bool
     file_name: str
     asked_at: datetime
     folder: Path
@@ -70,11 +71,12 @@ class Job:
 
     def is_same_order(self, other: "Job") -> bool:
         """Return whether two jobs are orders of the same file by the same account."""
-        return (self.owner, self.study_key, self.kind, self.session_id) == (
-            other.owner,
-            other.study_key,
-            other.kind,
-            other.session_id,
+        return (
+            *(self.owner, self.study_key, self.kind),
+            *(self.session_id, self.movement),
+        ) == (
+            *(other.owner, other.study_key, other.kind),
+            *(other.session_id, other.movement),
         )
 
     def remove_files(self) -> None:
@@ -96,6 +98,7 @@ class Job:
             study_key=self.study_key,
             kind=self.kind,
             session_id=self.session_id,
+            movement=self.movement,
             file_name=self.file_name,
             state=self.state,
             asked_at=self.asked_at,

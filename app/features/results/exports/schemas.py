@@ -11,12 +11,16 @@ ExportState = Literal["queued", "making", "ready", "failed"]
 
 
 class ExportWish(BaseModel):
-    """The data to export: a study's sessions of one kind, or only one session of that kind."""
+    """The data to export: a study's sessions of one kind, or only one session of that kind.
+
+    `movement`: also the frames of every session, which are nearly all of the size.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
     kind: Kind
     session_id: Annotated[str, StringConstraints(min_length=1, max_length=32)] | None = None
+    movement: bool = True
 
 
 class ExportTrouble(BaseModel):
@@ -39,6 +43,7 @@ class ExportView(BaseModel):
     study_key: str
     kind: Kind
     session_id: str | None
+    movement: bool
     file_name: str
     state: ExportState
     asked_at: datetime

@@ -22,6 +22,7 @@ class ExportOrder:
     study_key: str
     kind: Kind
     session_id: str | None
+    movement: bool
     now: datetime
     to: Path
     meter: Path

@@ -38,6 +38,25 @@ def csv_pieces(table: str, frame: pd.DataFrame, *, rules: bool = True) -> Iterat
         yield _lines(list(zip(*cells, strict=True)))
 
 
+def plain_pieces(names: Sequence[str], rows: Iterator[Sequence[Any]]) -> Iterator[bytes]:
+    """Yield a table whose columns are not in the codebook, in the same way.
+
+    Texts and booleans are recognised by their values; everything else is a number.
+    """
+    yield _lines([list(names)])
+    for row in rows:
+        yield _lines([[_plain(value) for value in row]])
+
+
+def _plain(value: Any) -> str:
+    if pd.isna(value):
+        return ""
+    kind: ColumnType = (
+        "text" if isinstance(value, str) else "boolean" if isinstance(value, bool) else "number"
+    )
+    return _WRITERS[kind](value)
+
+
 def _cells(values: Sequence[Any], kind: ColumnType) -> list[str]:
     write = _WRITERS[kind]
     return ["" if pd.isna(value) else write(value) for value in values]

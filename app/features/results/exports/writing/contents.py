@@ -7,7 +7,7 @@ read from the database while it is written; the README is written last, because 
 import hashlib
 import json
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, fields, replace
 from datetime import datetime
 
 import pandas as pd
@@ -19,6 +19,8 @@ from app.features.people.audit import TrailHead, head_of
 from app.features.record.receipts import receipt_of
 from app.features.record.telemetry import epochs_of
 from app.features.results.analysis.codebook import codebook_frame
+from app.features.results.analysis.material import read_material
+from app.features.results.analysis.questions.wide import PERSON, WideColumn, wide_table
 from app.features.results.analysis.tables import (
     Kind,
     alarms_table,
@@ -44,7 +46,7 @@ from app.features.results.analysis.tables import (
 )
 from app.features.results.exports.names import fingers_path, receipt_path, samples_path
 from app.features.results.exports.writing.blinding import without_conditions
-from app.features.results.exports.writing.cells import csv_pieces
+from app.features.results.exports.writing.cells import csv_pieces, plain_pieces
 from app.features.results.exports.writing.readme import FileCount, Origin, readme_text
 from app.features.results.exports.writing.samples import SampleFile
 from app.features.results.imports import import_files
@@ -86,7 +88,11 @@ FOLDERS = {
 }
 """The folders of an export, and the suffixes of their files."""
 TOP_LEVEL = frozenset(
-    {*(f"{name}.csv" for name in (*TABLE_FILES, *EQUIPMENT_FILES, "codebook")), README}
+    {
+        *(f"{name}.csv" for name in (*TABLE_FILES, *EQUIPMENT_FILES, "codebook")),
+        *("wide.csv", "wide_columns.csv"),
+        README,
+    }
 )
 
 
@@ -102,7 +108,8 @@ class Member:
 class Contents:
     """The members of one export; iterate once, since `files` and `sessions` fill up meanwhile.
 
-    `only`: leave out all other sessions, as for a participant's own copy. For sessions in `hidden`,
+    `only`: leave out all other sessions, as for a participant's own copy. `movement`: include the
+    frames of every session, which are nearly all of an export's size. For sessions in `hidden`,
     nothing that reveals their condition is written, whoever the copy is for; `revealed` are open
     sessions whose condition is included because somebody had it shown.
     """
@@ -112,6 +119,7 @@ class Contents:
     kind: Kind
     now: datetime
     only: frozenset[str] | None = None
+    movement: bool = True
     files: list[FileCount] = field(default_factory=list)
     sessions: int = 0
     audit_head: TrailHead = field(init=False)
@@ -133,6 +141,7 @@ class Contents:
         for name, table in TABLE_FILES.items():
             frame = sessions if name == "sessions" else self._table(name, table)
             yield self._member(f"{name}.csv", csv_pieces(name, frame, rules=rules))
+        yield from self._wide()
         for name, equipment in EQUIPMENT_FILES.items():
             yield self._member(f"{name}.csv", csv_pieces(name, equipment(self.db)))
         described = codebook_frame(rules=rules)
@@ -143,13 +152,15 @@ class Contents:
                 yield self._member(f"protocol/{name}", iter([text.encode()]))
         rows = sessions[["participant_code", "session_id", "simulated", "avatar"]]
         for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
-            samples = SampleFile(
-                *(self.db, session_id, bool(simulated), avatar), blinded=session_id in self.hidden
-            )
-            yield self._member(samples_path(code, session_id), samples.pieces())
-            if self._has_fingers(session_id):
-                fingers = replace(samples, fingers=True)
-                yield self._member(fingers_path(code, session_id), fingers.pieces())
+            if self.movement:
+                samples = SampleFile(
+                    *(self.db, session_id, bool(simulated), avatar),
+                    blinded=session_id in self.hidden,
+                )
+                yield self._member(samples_path(code, session_id), samples.pieces())
+                if self._has_fingers(session_id):
+                    fingers = replace(samples, fingers=True)
+                    yield self._member(fingers_path(code, session_id), fingers.pieces())
             yield self._member(receipt_path(code, session_id), self._receipt(session_id))
         # Imported answers stay apart from the tables; a participant's own copy has only sessions.
         if self.kind in ("people", "all") and self.only is None:
@@ -163,6 +174,21 @@ class Contents:
         frame = table(self.db, self.study_key, self.kind)
         own = frame if self.only is None else frame[frame["session_id"].isin(list(self.only))]
         return without_conditions(name, own, self.hidden)
+
+    def _wide(self) -> Iterator[Member]:
+        """Yield the tested values in wide form, with what each column means.
+
+        Only for a whole kind: people and simulated ones are never in one analysis.
+        """
+        if self.kind == "all" or self.only is not None:
+            return
+        wide = wide_table(read_material(self.db, self.study_key, self.kind, names=()))
+        names = [*PERSON, *(column.name for column in wide.columns)]
+        rows = wide.frame[names].itertuples(index=False, name=None)
+        yield self._member("wide.csv", plain_pieces(names, rows))
+        meanings = [one.name for one in fields(WideColumn)]
+        described = iter([astuple(column) for column in wide.columns])
+        yield self._member("wide_columns.csv", plain_pieces(meanings, described))
 
     def _protocol(self, study: Study, used: set[int]) -> dict[str, str]:
         """Return the files of each version in use, and of its instruments: wording and formulas."""

@@ -61,7 +61,9 @@ def _write_export(order: ExportOrder) -> ExportResult:
         with database.reading() as db, order.to.with_suffix(".part").open("xb") as file:
             only = None if order.session_id is None else frozenset({order.session_id})
             _expect(db, order, progress)
-            contents = Contents(db, order.study_key, order.kind, order.now, only)
+            contents = Contents(
+                *(db, order.study_key, order.kind, order.now), only, movement=order.movement
+            )
             members = watched(contents.members(), progress)
             for piece in zip_pieces(members, order.now):
                 file.write(piece)
@@ -117,7 +119,8 @@ def _expect(db: Session, order: ExportOrder, progress: Progress) -> None:
     progress.sessions_total = (
         db.scalar(select(func.count()).select_from(session_ids.subquery())) or 0
     )
-    progress.rows_total = int(db.scalar(select(func.sum(longest.c.rows))) or 0)
+    if order.movement:
+        progress.rows_total = int(db.scalar(select(func.sum(longest.c.rows))) or 0)
     Meter(order.meter).write(progress)
     _require_room(order)
 

@@ -26,10 +26,13 @@ Reading the files
   true and false, times UTC in ISO 8601. Numbers stand in full precision.
   Redone phases, superseded forms and broken-off sessions are included: use rows with valid = true.
   A text that a spreadsheet would run as a formula has an apostrophe in front of it.
-  samples/ holds one file per session. Target and actual body stand side by side, joined on epoch
-  and seq; the cells of a stream are empty where it has no frame. Positions in metres (world: x to
-  the right, y up, -z ahead), quaternions w, x, y, z. Frames stand as they came: NaN and Infinity
-  are values that were sent, and such rows are flagged.
+  wide.csv, where it is there, has one row per participant who counts and one column per score and
+  measure, task and condition, with names that JASP and SPSS take: the values that the statistics
+  test. wide_columns.csv says what each column is. Use it or the long tables, not both.
+  samples/, where movement was asked for, holds one file per session. Target and actual body stand
+  side by side, joined on epoch and seq; the cells of a stream are empty where it has no frame.
+  Positions in metres (world: x to the right, y up, -z ahead), quaternions w, x, y, z. Frames stand
+  as they came: NaN and Infinity are values that were sent, and such rows are flagged.
   fingers/, where it is there, holds the same for the fingers of sessions that recorded them, joined
   on the same epoch and seq. The values of a hand that was not tracked are NaN.
   receipts/ holds one file per session that says how many frames were made, stored and are missing,
