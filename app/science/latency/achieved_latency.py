@@ -21,8 +21,10 @@ What the number means:
 - It is one number for the whole phase. A delay that changes on the way is noticed: up to four
   pieces of the phase, with at least five seconds of movement each, are measured on their own. Where
   two of them differ by more than two tolerances and their intervals do not overlap, `changed` is
-  true, the latency is only an average over the phase, and `reason` lists the pieces. A change that
-  is over within a piece shows only in the width of the interval.
+  true, the latency is only an average over the phase, and `reason` lists the pieces. For changes
+  that are over within a piece, each second is correlated on its own (`moments`): `changed` is true,
+  too, where three seconds and a twentieth of them deviate by more than two tolerances, and `reason`
+  says for how long. Shorter changes show only in the width of the interval.
 - A movement that repeats itself fits at several lags. Where the data cannot decide between them,
   the smallest lag that is not negative is returned, and `reason` lists the others.
 """
@@ -36,6 +38,7 @@ import numpy as np
 
 from app.science.latency.choice import choose, half_width_s
 from app.science.latency.correlation import Correlation, correlate
+from app.science.latency.moments import Moments, moments_of
 from app.science.latency.refinement import prepare
 from app.science.latency.smoothing import BoolArray, Track, track_of
 from app.science.latency.stretches import Stretch, stretches
@@ -91,7 +94,7 @@ class AchievedLatency:
         reason: the reason why there is no latency, or a reservation about it; else None.
         pieces_s: the latency of each piece of the phase, in order; None where one is unknown. Empty
             if there is too little movement for two pieces.
-        changed: whether the pieces differ: the delay was not the same throughout.
+        changed: whether pieces or single seconds differ: the delay was not the same throughout.
     """
 
     latency_s: float | None
@@ -153,7 +156,30 @@ def latency_of_runs(
     if count < 2:
         return whole
     pieces = [_measured(piece, lowest_s, highest_s) for piece in _pieces(tracks, count)]
-    return _compared(whole, pieces)
+    compared = _compared(whole, pieces)
+    if compared.changed:
+        return compared
+    found = moments_of(
+        list(stretches(tracks)),
+        lowest_s,
+        highest_s,
+        moving_rad_s=math.radians(MOVING_DEG_S),
+        least_s=2.0 * tolerance_s(whole),
+    )
+    return compared if found is None or not found.changed else _with_moments(compared, found)
+
+
+def _with_moments(whole: AchievedLatency, found: Moments) -> AchievedLatency:
+    """Say that single seconds of the phase have another delay than the usual one."""
+    others = sorted(found.deviating_s)
+    low, high = _ms(others[0]), _ms(others[-1])
+    span = f"{low} ms" if low == high else f"{low} to {high} ms"
+    told = (
+        f"The delay changed for moments: it was {_ms(found.usual_s)} ms in the median second of"
+        f" movement, and {span} in {len(others)} of {found.clear}."
+    )
+    reason = told if whole.reason is None else f"{whole.reason} {told}"
+    return replace(whole, reason=reason, changed=True)
 
 
 def _measured(

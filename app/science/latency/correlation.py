@@ -67,8 +67,8 @@ def correlate(
     for part in parts:
         count = len(part.grid_s)
         history_s = part.grid_s[0] + GRID_S * np.arange(-before, count + after)
-        actual, known = _turning(smoothed(part.actual, part.grid_s, COARSE_BANDWIDTH_S))
-        target, target_known = _turning(smoothed(part.target, history_s, COARSE_BANDWIDTH_S))
+        actual, known = turning(smoothed(part.actual, part.grid_s, COARSE_BANDWIDTH_S))
+        target, target_known = turning(smoothed(part.target, history_s, COARSE_BANDWIDTH_S))
         present = np.linalg.norm(target[before : before + count], axis=-1).max(axis=1)
         movement_s += GRID_S * int(((present > moving_rad_s) & part.active).sum())
         known = known & part.active[:, np.newaxis]
@@ -82,7 +82,7 @@ def correlate(
     return Correlation(lags.astype(np.float64) * GRID_S, values, movement_s)
 
 
-def _turning(curves: Curves) -> tuple[FloatArray, BoolArray]:
+def turning(curves: Curves) -> tuple[FloatArray, BoolArray]:
     """Return angular velocities (k, joints, 3) in the parent's frame, and where they are known."""
     rate = 2.0 * multiply(curves.rates, conjugate(curves.values))[..., 1:]
     return rate, np.broadcast_to(curves.known, rate.shape[:2])

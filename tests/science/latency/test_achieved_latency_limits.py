@@ -169,6 +169,38 @@ def test_a_delay_that_changes_is_noticed_with_its_pieces(
     assert "changed during the phase; its pieces, in order: 100 ms, " in result.reason
 
 
+@pytest.mark.parametrize(
+    ("late", "seconds"),
+    [
+        (lambda t_s: np.where(t_s // 1.0 % 2 == 0, 0.1, 0.2), range(15, 26)),
+        (lambda t_s: np.where(t_s // 5.0 % 2 == 0, 0.1, 0.2), range(15, 26)),
+        (lambda t_s: np.where((t_s > 16.0) & (t_s < 24.0), 0.3, 0.1), range(6, 10)),
+        (lambda t_s: np.where(t_s > 36.0, 0.2, 0.1), range(3, 6)),
+    ],
+    ids=["every second", "every five seconds", "for eight seconds", "for the last tenth"],
+)
+def test_a_delay_that_changes_for_moments_is_noticed(
+    late: Movement, seconds: range, rng: np.random.Generator
+) -> None:
+    """A delay that alternates, or grows for a while within 40 s, is flagged with its seconds."""
+    movement = made_movement(rng)
+    usual = record(movement, 0.0, rng, Flaws(noise_deg=0.1), duration_s=40.0)
+    moved = record(
+        lambda times_s: movement(times_s - late(times_s)),
+        0.0,
+        rng,
+        Flaws(noise_deg=0.1),
+        duration_s=40.0,
+    )
+    result = latency_of_runs([replace(usual, actual_rotations=moved.actual_rotations)])
+    assert result.changed
+    assert is_off(result, 0.1)
+    assert result.reason is not None
+    told = re.search(r"(\d+) ms in the median second.* in (\d+) of \d+\.", result.reason)
+    assert told is not None
+    assert int(told[2]) in seconds
+
+
 @pytest.mark.parametrize("noise_deg", [0.0, 1.5])
 def test_a_constant_delay_has_not_changed(noise_deg: float, rng: np.random.Generator) -> None:
     """Noise, jitter and dropped frames do not make pieces of one delay differ."""
