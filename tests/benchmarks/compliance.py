@@ -56,11 +56,11 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
 
 def _pushes(part: str, body: Configuration, figure: BodyFigure | None) -> Iterator[Figure]:
     restored = not_finite = 0
-    for name, force_n, (x, y, z) in PUSHES:
-        push = Disturbance("LeftLowerLeg", (force_n * x, force_n * y, force_n * z))
+    for name, force_n, direction in PUSHES:
+        push = pushed_shin(force_n, direction)
         for stiffness in STIFFNESSES:
             joint, world = (
-                _pushed(body, figure, Compliance(stiffness, targets), push) for targets in TARGETS
+                pushed(body, figure, Compliance(stiffness, targets), push) for targets in TARGETS
             )
             case = f"{name}, {100 * stiffness:g} % stiff"
             yield from _compared(part, f"{case}, peak", "deg", _peak_deg(joint), _peak_deg(world))
@@ -79,9 +79,16 @@ def _compared(part: str, name: str, unit: str, joint: float, world: float) -> It
     yield Figure(part, f"{name}, world targets", world, unit, "joint targets", joint)
 
 
-def _pushed(
+def pushed_shin(force_n: float, direction: Vector) -> Disturbance:
+    """Return a push of the left shin by so many newtons along a unit vector in the world."""
+    x, y, z = direction
+    return Disturbance("LeftLowerLeg", (force_n * x, force_n * y, force_n * z))
+
+
+def pushed(
     body: Configuration, figure: BodyFigure | None, leg: Compliance, push: Disturbance
 ) -> Response:
+    """Push a shin of a body with a left leg that gives way as stated."""
     soft = replace(body, compliance={"left_leg": leg})
     return disturb(soft, STATURE_M, push, _step(), figure=figure)
 

@@ -53,7 +53,7 @@ EDITED = replace(
     total_mass_kg=61.5,
     population="male",
 )
-PAGE = Path(__file__).parents[2] / "docs" / "avatar-configuration.md"
+DOCS = Path(__file__).parents[2] / "docs"
 _OPERATIONS: TypeAdapter[Sequence[Any]] = TypeAdapter(list[Operation])
 A_THOUSAND = settings(
     max_examples=1_000, deadline=None, suppress_health_check=[HealthCheck.too_slow]
@@ -84,7 +84,8 @@ def after(configuration: Configuration, *operations: Json) -> Configuration:
 
 def functions_of_the_thesis() -> list[tuple[str, Json]]:
     """Return the rows of the table in the docs: function and operation."""
-    rows = re.findall(r"^\| ([^|]+) \| [^|]+ \| `(\{.*\})` \| [^|]+ \|$", PAGE.read_text(), re.M)
+    text = (DOCS / "avatar-editor.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([^|]+) \| [^|]+ \| `(\{.*\})` \| [^|]+ \|$", text, re.M)
     return [(function, json.loads(operation)) for function, operation in rows]
 
 
@@ -104,7 +105,7 @@ def test_the_docs_list_every_operation_with_its_keys() -> None:
     """Every operation has a row with all of its keys, and one that the thesis's table makes."""
     rows = functions_of_the_thesis()
     assert len(rows) == 27
-    text = PAGE.read_text()
+    text = (DOCS / "avatar-configuration.md").read_text(encoding="utf-8")
     for name, model in operation_models().items():
         (row,) = (line for line in text.splitlines() if re.match(rf"\| (`\w+`, )?`{name}`", line))
         for key in set(model.model_fields) - {"operation"}:

@@ -2,7 +2,7 @@
 
 from app.science.avatar.tuning.assessment import Assessment, assess
 from app.science.avatar.tuning.curves import RelayCurve, StepCurve, relay_curve, step_curve
-from app.science.avatar.tuning.disturbance import Disturbance, Response, disturb
+from app.science.avatar.tuning.disturbance import RETURNED_RAD, Disturbance, Response, disturb
 from app.science.avatar.tuning.heuristics import HEURISTICS
 from app.science.avatar.tuning.plant import Pose
 from app.science.avatar.tuning.relay import NoOscillation, RelaySettings
@@ -31,6 +31,7 @@ from app.science.avatar.tuning.tuner import tune
 __all__ = [
     "EMPTY_SPACE",
     "HEURISTICS",
+    "RETURNED_RAD",
     "Assessment",
     "AxisTuning",
     "Disturbance",
