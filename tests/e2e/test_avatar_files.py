@@ -1,4 +1,4 @@
-"""A browser test of an avatar's file: exported, edited outside, refused, and imported again."""
+"""A browser test of what comes from elsewhere: an avatar's file, and another avatar."""
 
 import json
 from collections.abc import Callable
@@ -72,3 +72,43 @@ def test_a_file_is_exported_edited_refused_and_imported(
     expect(page.get_by_text(UNSAVED, exact=True)).to_be_visible(timeout=PATIENCE_MS)
     page.keyboard.press("Control+z")
     expect(page.get_by_text(UNSAVED, exact=True)).to_have_count(0)
+    taken_from_another_avatar(page, url, tree, axe)
+
+
+def taken_from_another_avatar(
+    page: Page, url: str, tree: dict[str, Any], axe: Callable[[Page], list[str]]
+) -> None:
+    """A group takes the gains of another avatar, and nothing else; one edit takes them back."""
+    foot = tree["axes"]["LeftFootX"] | {"kp_nm_per_rad": 33.0, "high_deg": 12.0}
+    head = tree["axes"]["HeadX"] | {"kp_nm_per_rad": 44.0}
+    made = tree | {"axes": tree["axes"] | {"LeftFootX": foot, "HeadX": head}}
+    # A title and a note are text, whatever they contain; only the beginning of a note is a heading.
+    title = "<b>Preset</b> \U0001f9be"
+    note = "Soft <i>foot</i>. Made to be taken over."
+    preset = {"key": "preset", "title": title, "origin": "by_hand", "note": note}
+    answer = page.request.post(f"{url}/api/avatars", data=preset | {"configuration": made})
+    assert answer.status == 201, answer.text()
+    page.reload()
+    page.get_by_role("tab", name="Versions and files").click(timeout=PATIENCE_MS)
+    form = page.get_by_role("form", name="From another avatar")
+    form.get_by_role("combobox", name="Avatar and version").click(timeout=PATIENCE_MS)
+    page.get_by_role("option", name=f"{title}, version 1", exact=True).click()
+    form.get_by_role("button", name="Compare").click()
+    panel = page.get_by_role("region", name="From another avatar")
+    expect(panel.get_by_role("row")).to_have_count(1 + 3, timeout=PATIENCE_MS)
+    assert axe(page) == []
+    form.get_by_role("combobox", name="What to take").click()
+    page.get_by_role("option", name="left leg", exact=True).click()
+    form.get_by_role("button", name="Take over").click()
+    expect(page.get_by_text(UNSAVED, exact=True)).to_be_visible(timeout=PATIENCE_MS)
+    expect(panel.get_by_role("row")).to_have_count(1 + 2)
+    page.keyboard.press("Control+z")
+    expect(page.get_by_text(UNSAVED, exact=True)).to_have_count(0)
+    form.get_by_role("combobox", name="What to take").click()
+    page.get_by_role("option", name="everything", exact=True).click()
+    form.get_by_role("button", name="Take over").click()
+    expect(page.get_by_text("3 unsaved changes", exact=True)).to_be_visible(timeout=PATIENCE_MS)
+    page.keyboard.press("Control+z")
+    page.goto(f"{url}/#/avatars/preset/1")
+    page.get_by_text("Whole note").click(timeout=PATIENCE_MS)
+    expect(page.get_by_text(note, exact=True)).to_be_visible()

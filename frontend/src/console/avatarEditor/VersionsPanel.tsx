@@ -13,6 +13,7 @@ import type { AvatarFile } from "./axes";
 import { Differences } from "./Differences";
 import classes from "./Editor.module.css";
 import { loadVersion } from "./operations";
+import { TakeFrom } from "./TakeFrom";
 import { UsedBy } from "./UsedBy";
 
 interface VersionsPanelProps {
@@ -114,6 +115,18 @@ export function VersionsPanel(props: VersionsPanelProps): JSX.Element {
                   {t("avatars.file")}
                 </Button>
               </span>
+              {version.note !== "" && firstSentence(version) !== version.note && (
+                <details className={`${classes.more} ${classes.wholeNote}`}>
+                  <summary>
+                    {t("avatars.note.whole")}
+                    <span className="visually-hidden">
+                      {" "}
+                      {t("avatars.version", { number: version.number })}
+                    </span>
+                  </summary>
+                  <p>{version.note}</p>
+                </details>
+              )}
               {compared === version.number && (
                 <div className={classes.compared}>
                   <Compared
@@ -152,6 +165,13 @@ export function VersionsPanel(props: VersionsPanelProps): JSX.Element {
           </FileButton>
         )}
       </section>
+      <TakeFrom
+        avatarKey={avatar.key}
+        configuration={configuration}
+        work={isReadOnly ? t("avatars.version", { number: basedOn }) : t("avatars.yourWork")}
+        edit={edit}
+        isReadOnly={isReadOnly}
+      />
     </div>
   );
 }

@@ -44,6 +44,26 @@ export const loadVersion = (key: string, version: number): Operation[] => [
   { operation: "load", key, version, what: EVERYTHING },
 ];
 
+/** What groups can take from another avatar. */
+export const ASPECTS = {
+  gains: ["gains"],
+  limits: ["limits"],
+  group: EVERYTHING,
+} as const;
+export type Aspects = keyof typeof ASPECTS;
+
+/** Take settings from a saved version, named `key number`: a group's, or for null all there are. */
+export function takeFrom(
+  version: string,
+  groups: readonly string[] | null,
+  aspects: Aspects,
+): Operation[] {
+  const [key = "", number = ""] = version.split(" ");
+  if (groups === null) return loadVersion(key, Number(number));
+  const what = ASPECTS[aspects];
+  return [{ operation: "load", key, version: Number(number), targets: groups, what } as Operation];
+}
+
 /** Give one body group the settings that it has in the shipped avatar. */
 export const resetGroup = (group: string): Operation[] => [
   { operation: "load", key: "standard", targets: [group], what: EVERYTHING },

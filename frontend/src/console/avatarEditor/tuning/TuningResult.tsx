@@ -29,6 +29,9 @@ import own from "./Tuning.module.css";
 import { TuningCurves } from "./TuningCurves";
 import { type TunedAxis, type Tuning, tunedConfigurationQuery } from "./tunings";
 
+/** A finger is damped by some hundredths of N m s/rad, and tuning changes thousandths of it. */
+const DAMPING_DIGITS = 4;
+
 interface TuningResultProps extends TuningPanelProps {
   readonly tuning: Tuning;
   readonly choices: Choices;
@@ -188,8 +191,8 @@ function Row(props: RowProps): JSX.Element {
   const { t, language } = texts;
   const [isOpen, setOpen] = useState(false);
   const name = axisName(texts, axis.name);
-  const figure = (value: number | null | undefined) =>
-    value == null ? "–" : decimals(value, language, DIGITS);
+  const figure = (value: number | null | undefined, digits = DIGITS) =>
+    value == null ? "–" : decimals(value, language, digits);
   const words = [
     axis.reason,
     // The note of a mirrored axis says the same by the axis's own name.
@@ -239,8 +242,8 @@ function Row(props: RowProps): JSX.Element {
         </td>
         <td className={own.figure}>
           <Change
-            before={figure(axis.kd_before)}
-            after={axis.kd == null ? null : figure(axis.kd)}
+            before={figure(axis.kd_before, DAMPING_DIGITS)}
+            after={axis.kd == null ? null : figure(axis.kd, DAMPING_DIGITS)}
           />
         </td>
         <td className={own.figure}>{figure(axis.step?.overshoot_percent)}</td>
