@@ -14,12 +14,16 @@ const has = (key: string): key is keyof typeof avatarChangesEn =>
 const JOINTS =
   /^(Hips|Spine|Chest|UpperChest|Neck|Head|(Left|Right)(Shoulder|UpperArm|LowerArm|Hand|UpperLeg|LowerLeg|Foot|Toes))$/;
 
-/** The name of a body group or part; parts of fingers keep their own names. */
+/** The name of a body group or part; of a name that is neither, its words. */
 export function groupName({ t }: Pick<Texts, "t">, group: string): string {
   if (has(`bodyGroup.${group}`)) return t(`bodyGroup.${group}` as Key);
   if (JOINTS.test(group)) return t(`joint.${group}` as Key);
-  return group.replace(/([a-z])([A-Z])/g, "$1 $2");
+  const [, finger, segment] = FINGER.exec(group) ?? [];
+  if (finger === undefined) return group.replace(/([a-z])([A-Z])/g, "$1 $2");
+  return t(`avatarChanges.${segment}` as Key, { finger: t(`axis.joint.${finger}` as Key) });
 }
+
+const FINGER = /^((?:Left|Right)(?:Thumb|Index|Middle|Ring|Little))(Proximal|Intermediate|Distal)$/;
 
 export const layerName = ({ t }: Pick<Texts, "t">, layer: string): string =>
   has(`bodyLayer.${layer}`) ? t(`bodyLayer.${layer}` as Key) : layer;

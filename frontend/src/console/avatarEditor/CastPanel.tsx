@@ -12,7 +12,7 @@ import classes from "./Editor.module.css";
 import { DrivenSelect } from "./GroupSelect";
 import type { PanelProps } from "./panels";
 
-/** More angle fields than this would bury the button: the others start at the T-pose. */
+/** More angle fields than this would bury the button: they are unfolded by those who want them. */
 const MAX_FIELDS = 12;
 
 export function CastPanel({ configuration, edit, isReadOnly }: PanelProps): JSX.Element {
@@ -38,6 +38,27 @@ export function CastPanel({ configuration, edit, isReadOnly }: PanelProps): JSX.
     const operation = { operation: "lock", group, held_deg: angles } as Operation;
     void edit([operation], t("avatars.did.cast", { name: groupName(texts, group) }));
   };
+  const fields = axes.map((axis) => {
+    const settings = configuration.axes[axis];
+    const range = t("avatars.cast.range", {
+      low: decimals(settings?.low_deg ?? 0, language, 0),
+      high: decimals(settings?.high_deg ?? 0, language, 0),
+    });
+    return (
+      <NumberInput
+        key={axis}
+        size="xs"
+        label={axisName(texts, axis)}
+        description={range}
+        error={isBeyond(axis) ? t("avatars.cast.beyond", { range }) : null}
+        placeholder="0°"
+        suffix="°"
+        value={held[axis] ?? ""}
+        onChange={(value) => setHeld({ ...held, [axis]: value })}
+        hideControls
+      />
+    );
+  });
   return (
     <div className={classes.panels}>
       <fieldset className={classes.panel} disabled={isReadOnly}>
@@ -51,28 +72,14 @@ export function CastPanel({ configuration, edit, isReadOnly }: PanelProps): JSX.
         >
           <DrivenSelect {...whom} />
           <p className={classes.soft}>{t("avatars.cast.hint")}</p>
-          {axes.length <= MAX_FIELDS &&
-            axes.map((axis) => {
-              const settings = configuration.axes[axis];
-              const range = t("avatars.cast.range", {
-                low: decimals(settings?.low_deg ?? 0, language, 0),
-                high: decimals(settings?.high_deg ?? 0, language, 0),
-              });
-              return (
-                <NumberInput
-                  key={axis}
-                  size="xs"
-                  label={axisName(texts, axis)}
-                  description={range}
-                  error={isBeyond(axis) ? t("avatars.cast.beyond", { range }) : null}
-                  placeholder="0°"
-                  suffix="°"
-                  value={held[axis] ?? ""}
-                  onChange={(value) => setHeld({ ...held, [axis]: value })}
-                  hideControls
-                />
-              );
-            })}
+          {axes.length <= MAX_FIELDS ? (
+            fields
+          ) : (
+            <details className={classes.more}>
+              <summary>{t("avatars.cast.angles", { count: axes.length })}</summary>
+              <div className={classes.stack}>{fields}</div>
+            </details>
+          )}
           <Button type="submit" size="xs" className={classes.start ?? ""} disabled={isReadOnly}>
             {t("avatars.cast.put")}
           </Button>

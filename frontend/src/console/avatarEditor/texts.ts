@@ -251,6 +251,8 @@ export const avatarsEn = {
   "avatars.cast.put": "Put a cast on",
   "avatars.cast.hint":
     "A cast holds the group at these angles, or at those of the T-pose. Its limits are kept for when the cast comes off.",
+  "avatars.cast.angles_one": "Angle of {{count}} axis",
+  "avatars.cast.angles_other": "Angles of {{count}} axes",
   "avatars.cast.range": "{{low}}° to {{high}}°",
   "avatars.cast.beyond": "Not possible: {{range}}.",
   "avatars.cast.none": "Nothing is in a cast.",
@@ -626,6 +628,8 @@ export const avatarsDe: Readonly<Record<keyof typeof avatarsEn, string>> = {
   "avatars.cast.put": "Gips anlegen",
   "avatars.cast.hint":
     "Ein Gips hält die Gruppe in diesen Winkeln, sonst in denen der T-Pose. Ihre Grenzen bleiben für danach gespeichert.",
+  "avatars.cast.angles_one": "Winkel von {{count}} Achse",
+  "avatars.cast.angles_other": "Winkel von {{count}} Achsen",
   "avatars.cast.range": "{{low}}° bis {{high}}°",
   "avatars.cast.beyond": "Nicht möglich: {{range}}.",
   "avatars.cast.none": "Nichts ist im Gips.",
