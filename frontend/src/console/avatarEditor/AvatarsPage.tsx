@@ -93,6 +93,16 @@ interface NewAvatarProps {
   readonly onClose: () => void;
 }
 
+/** A key for a title without Latin letters, such as one in Japanese: `avatar`, `avatar_2`, ... */
+function freeKey(all: readonly { readonly key: string }[]): string {
+  const taken = new Set(all.map(({ key }) => key));
+  const numbered = (number: number): string => {
+    const key = number === 1 ? "avatar" : `avatar_${number}`;
+    return taken.has(key) ? numbered(number + 1) : key;
+  };
+  return numbered(1);
+}
+
 function NewAvatar({ all, isOpen, onClose }: NewAvatarProps): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
@@ -100,7 +110,7 @@ function NewAvatar({ all, isOpen, onClose }: NewAvatarProps): JSX.Element {
   const [title, setTitle] = useState("");
   const [base, setBase] = useState<string | null>(null);
   const from = base ?? all.find(({ key }) => key === "standard")?.key ?? all[0]?.key ?? "";
-  const key = keyFrom(title);
+  const key = title.trim() === "" ? "" : keyFrom(title) || freeKey(all);
   const add = useMutation({
     mutationFn: async () => {
       const { newest } = await queries.fetchQuery(avatarQuery(from));

@@ -114,7 +114,9 @@ export function SaveDialog(props: SaveDialogProps): JSX.Element {
                 description={t("avatars.save.key.hint")}
                 value={key}
                 maxLength={80}
-                error={key !== "" && isWrong ? t("bodies.name.wrong") : null}
+                error={
+                  (key !== "" || name.trim() !== "") && isWrong ? t("bodies.name.wrong") : null
+                }
                 onChange={(event) => setWritten(event.currentTarget.value)}
               />
             </>
