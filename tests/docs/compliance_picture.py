@@ -100,9 +100,8 @@ def add_curve(figure: go.Figure, curve: Curve, targets: str, response: Response)
 def main(file: Path) -> None:
     """Write the picture as PNG."""
     html = drawn().to_html(include_plotlyjs=True, config={"staticPlot": True})
-    size = {"width": WIDTH_PX, "height": HEIGHT_PX}
     with launched_browser() as browser:
-        page = browser.new_page(viewport=size)
+        page = browser.new_page(viewport={"width": WIDTH_PX, "height": HEIGHT_PX})
         page.set_content(html)
         page.locator(".main-svg").first.wait_for()
         page.screenshot(path=file)
