@@ -27,6 +27,7 @@ from app.features.movement.tuning import TuningDesk, TuningQueue
 from app.features.movement.walking import FitQueue, PredictionQueue
 from app.features.people.accounts import RefusedSignIns, ensure_admin
 from app.features.record.demo import DemoRunner
+from app.features.record.lab_trackers import LabTrackers
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
 from app.features.record.tryout import TryoutRunner
 from app.features.results.analysis import Drawings
@@ -59,6 +60,7 @@ PARTS: tuple[PartMaker, ...] = (
     lambda context: TuningDesk().watched_by(context.background, "tuning-curves"),
     TuningQueue.of,
     LiveTracking,
+    LabTrackers,
     ExportQueue.of,
     StorageMeter.of,
     TryoutRunner.of,

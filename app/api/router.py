@@ -35,6 +35,7 @@ from app.features.record.devices.endpoints import router as devices
 from app.features.record.headset.endpoints import router as headset
 from app.features.record.headset.form_endpoints import router as headset_forms
 from app.features.record.lab_state.endpoints import router as lab_state
+from app.features.record.lab_trackers.endpoints import router as lab_trackers
 from app.features.record.ledger.endpoints import router as participants
 from app.features.record.poses.endpoints import router as poses
 from app.features.record.preflight.endpoints import router as preflight
@@ -121,7 +122,7 @@ def _routes() -> tuple[BaseRoute, ...]:
         *(tablet, sessions, watching),
         *(accounts, people, audit, studies, instruments, participants),
         *(devices, calls, headset, headset_forms, alarms, suggestions, calibrations),
-        self_tests,
+        *(self_tests, lab_trackers),
         *(analysis, exports, receipts, rights, network, captures, on_avatars, avatars),
         *(
             humanoids,

@@ -30,6 +30,8 @@ from app.models.telemetry import (
     TelemetryBatch,
     TelemetryChunk,
     TelemetryStream,
+    TrackerAlignment,
+    TrackerChunk,
 )
 from app.models.tuning import AvatarTuningRow
 from app.models.types import UtcDateTime, new_id
@@ -91,6 +93,8 @@ __all__ = [
     "TelemetryBatch",
     "TelemetryChunk",
     "TelemetryStream",
+    "TrackerAlignment",
+    "TrackerChunk",
     "UtcDateTime",
     "WalkSetRow",
     "WalkingModelRow",

@@ -208,3 +208,49 @@ class ClockProbe(Base):
     server_sent_ns: Mapped[int | None] = mapped_column(BigInteger)
     client_received_s: Mapped[float | None]
     server_utc: Mapped[datetime] = mapped_column(UtcDateTime)
+
+
+class TrackerChunk(Base):
+    """About one second of what a source of the lab's trackers sent for a session, as it came.
+
+    `number` counts the chunks of a session from 1. `source` is the source's label, `address` its
+    sender's; the head by the headset itself has the door `headset`. `first_s` and `last_s` are
+    arrivals by the server's monotonic clock, `first_at` the time of day at the first one.
+    `trackers`: their names, to which the columns in `data` refer.
+    """
+
+    __tablename__ = "tracker_chunks"
+
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    door: Mapped[str] = mapped_column(String(20))
+    source: Mapped[str] = mapped_column(String(64))
+    address: Mapped[str] = mapped_column(String(60))
+    first_s: Mapped[float]
+    last_s: Mapped[float]
+    first_at: Mapped[UtcTime]
+    sample_count: Mapped[int]
+    trackers: Mapped[list[str]] = mapped_column(JSON)
+    encoding: Mapped[str] = mapped_column(String(40))
+    data: Mapped[bytes] = mapped_column(LargeBinary)
+
+
+class TrackerAlignment(Base):
+    """How a session's trackers lay in the headset's world from a time on, or no longer did.
+
+    `change`: first, refit, recentred, moved or lost (`app.science.alignment.Change`). `client_t_s`
+    is the headset's monotonic time. `figures`: the alignment with its mount and its quality, and
+    the jump that was found; each null if there is none.
+    """
+
+    __tablename__ = "tracker_alignments"
+
+    id: Mapped[Id]
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), index=True)
+    at: Mapped[UtcTime]
+    change: Mapped[str] = mapped_column(String(20))
+    client_t_s: Mapped[float]
+    door: Mapped[str] = mapped_column(String(20))
+    source: Mapped[str] = mapped_column(String(64))
+    tracker: Mapped[str] = mapped_column(String(64))
+    figures: Mapped[dict[str, Any]] = mapped_column(JSON)

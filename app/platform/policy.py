@@ -124,6 +124,8 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/trackers": LAB,
     "PUT /api/trackers/doors/{door}": DESIGNERS,
     "PUT /api/trackers/limbs": RUNNERS,
+    "GET /api/sessions/{session_id}/trackers": LAB,
+    "PUT /api/sessions/{session_id}/trackers": RUNNERS,
     # Walking: scenes, walks, and the models that are fitted to them.
     "GET /api/avatar-tunings": LAB,
     "POST /api/avatar-tunings": DESIGNERS,
@@ -229,6 +231,7 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/vr/self-tests": HEADSET,
     "WEBSOCKET /api/vr/self-tests/storage": HEADSET,
     "WEBSOCKET /api/vr/stream": HEADSET,
+    "WEBSOCKET /api/vr/trackers": HEADSET,
 }
 
 

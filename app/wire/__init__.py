@@ -65,6 +65,7 @@ from app.wire.messages import (
     Welcome,
 )
 from app.wire.quality import FrameFlags, flag_batches, flag_frames, untracked_hands
+from app.wire.trackers import HEAD_POSES, HeadPose, HeadPoses, Place, TrackerPlaces, TrackersState
 
 __all__ = [
     "ACTIVE",
@@ -75,6 +76,7 @@ __all__ = [
     "FINGER_VALUES_PER_FRAME",
     "GOALS",
     "HEADER_BYTES",
+    "HEAD_POSES",
     "MAX_EPOCH",
     "MAX_TIME_S",
     "PARTICIPANT_STREAMS",
@@ -102,6 +104,8 @@ __all__ = [
     "Goal",
     "GoalState",
     "GoalsReport",
+    "HeadPose",
+    "HeadPoses",
     "HeadsetState",
     "Hello",
     "LayerOrder",
@@ -114,6 +118,7 @@ __all__ = [
     "PhaseEvent",
     "PhaseOrder",
     "PhaseReport",
+    "Place",
     "Pose",
     "Probe",
     "ProbeAnswer",
@@ -125,6 +130,8 @@ __all__ = [
     "Resend",
     "StreamName",
     "StreamPosition",
+    "TrackerPlaces",
+    "TrackersState",
     "Welcome",
     "decode_batch",
     "encode_batch",

@@ -244,7 +244,8 @@ class TestBudget:
             assert stranger.request(method, path, json={}).status_code == 429, name
         for page in ("/", "/tablet", "/tablet-worker.js", "/assets/x.js", "/api/openapi.json"):
             assert stranger.get(page).status_code == 429, page
-        for socket in ("/api/vr/stream", "/api/vr/self-tests/storage", "/api/sessions/x/pose"):
+        sockets = ("stream", "trackers", "self-tests/storage")
+        for socket in (*(f"/api/vr/{one}" for one in sockets), "/api/sessions/x/pose"):
             with (
                 pytest.raises(WebSocketDenialResponse) as denied,
                 stranger.websocket_connect(socket),

@@ -15,6 +15,8 @@ FAMILIES: dict[Family, tuple[str, ...]] = {
         "telemetry_streams",
         "client_reports",
         "clock_probes",
+        "tracker_alignments",
+        "tracker_chunks",
     ),
     # Results computed from it, phase by phase.
     "results": (

@@ -1,8 +1,10 @@
 """Live tracking: doors through which other software sends trackers, and the state of its sources.
 
-Doors are closed until somebody opens them. What arrives is watched and shown; it is not recorded.
+Doors are closed until somebody opens them. What arrives is watched and shown; other features follow
+it, such as for a session's headset.
 """
 
-from app.features.movement.live.service import LiveTracking
+from app.features.movement.live.service import LiveTracking, limbs_of
+from app.features.movement.live.sources import DoorKey, Sample, SourceClock
 
-__all__ = ["LiveTracking"]
+__all__ = ["DoorKey", "LiveTracking", "Sample", "SourceClock", "limbs_of"]

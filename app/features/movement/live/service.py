@@ -3,6 +3,7 @@
 import logging
 import threading
 from collections import Counter
+from collections.abc import Callable, Sequence
 from datetime import datetime
 
 from sqlalchemy import select
@@ -19,13 +20,22 @@ from app.features.movement.live.schemas import (
     SourceView,
     TrackerView,
 )
-from app.features.movement.live.sources import SILENT_S, DoorKey, Source, Sources, Tracker
+from app.features.movement.live.sources import (
+    SILENT_S,
+    DoorKey,
+    Sample,
+    Source,
+    Sources,
+    Tracker,
+)
 from app.models import LiveLimb
 from app.platform.context import AppContext, Part
 from app.science.skeleton import JOINT_NAMES
 
 log = logging.getLogger(__name__)
 Limbs = dict[tuple[str, str, str], str]
+Follower = Callable[[Sequence[Sample]], None]
+"""Takes samples in a door's thread as they come in: it must be quick, and must not raise."""
 MS_PER_S = 1000.0
 
 
@@ -37,6 +47,7 @@ class LiveTracking(Part):
         self._listeners: dict[DoorKey, Listener] = {}
         self._resumed: set[DoorKey] = set()
         self._sources = Sources()
+        self._followers: tuple[Follower, ...] = ()
         self._lock = threading.Lock()
         self._switching = threading.Lock()
 
@@ -78,6 +89,16 @@ class LiveTracking(Part):
                 listener.start()
                 self._listeners[door] = listener
 
+    def add_follower(self, follower: Follower) -> None:
+        """Give every sample from now on to `follower`, too; doubled and late ones are none."""
+        with self._lock:
+            self._followers = (*self._followers, follower)
+
+    def remove_follower(self, follower: Follower) -> None:
+        """Give a follower nothing more."""
+        with self._lock:
+            self._followers = tuple(one for one in self._followers if one != follower)
+
     def view(self, db: Session) -> LiveView:
         """Return all doors and sources as they are now."""
         limbs: Limbs = {
@@ -108,8 +129,22 @@ class LiveTracking(Part):
 
     def _take(self, door: DoorKey, batch: list[tuple[str, Reading, float]]) -> None:
         with self._lock:
-            for address, reading, arrival_s in batch:
+            noted = [
                 self._sources.note(door, address, reading, arrival_s)
+                for address, reading, arrival_s in batch
+            ]
+            followers = self._followers
+        samples = [one for one in noted if one is not None]
+        if not samples:
+            return
+        for follower in followers:
+            follower(samples)
+
+
+def limbs_of(db: Session, door: str, source: str) -> dict[str, str]:
+    """Return on which limbs the trackers of a source are worn, by tracker."""
+    rows = select(LiveLimb).where(LiveLimb.door == door, LiveLimb.source == source)
+    return {row.tracker: row.limb for row in db.scalars(rows)}
 
 
 def store_limb(db: Session, wish: LimbWish, *, by: str, now: datetime) -> None:

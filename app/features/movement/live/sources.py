@@ -43,13 +43,20 @@ _JITTER_SHARE = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """The poses of a packet with their time.
+    """The poses of a packet with its source and its time.
 
-    `mapped_s` is the source's time on the server's clock, with its uncertainty; without a source
-    time it is the arrival. `uncertainty_s` is None without a source time, and while it is unknown.
+    `door` is `headset` for where a headset says that its wearer's head is. `source` is the source's
+    label, `address` that of the sender. `source_s` is the time by the source's own clock, None if
+    it sends none. `mapped_s` is that time on the server's clock, with its uncertainty; without a
+    source time it is the arrival. `uncertainty_s` is None without a source time, and while it is
+    unknown.
     """
 
+    door: DoorKey | Literal["headset"]
+    source: str
+    address: str
     poses: tuple[Pose, ...]
+    source_s: float | None
     arrival_s: float
     mapped_s: float
     uncertainty_s: float | None
@@ -211,9 +218,17 @@ class Source:
 
     def _sample(self, reading: Reading, arrival_s: float) -> Sample:
         offset = self.clock.offset_s
-        if reading.time_s is None or offset is None:
-            return Sample(reading.poses, arrival_s, arrival_s, None)
-        return Sample(reading.poses, arrival_s, reading.time_s + offset, self.clock.uncertainty_s)
+        is_timed = reading.time_s is not None and offset is not None
+        return Sample(
+            door=self.key.door,
+            source=self.label,
+            address=self.key.address,
+            poses=reading.poses,
+            source_s=reading.time_s,
+            arrival_s=arrival_s,
+            mapped_s=(reading.time_s or 0.0) + (offset or 0.0) if is_timed else arrival_s,
+            uncertainty_s=self.clock.uncertainty_s if is_timed else None,
+        )
 
     def _in_order(self, reading: Reading) -> bool:
         """Count a packet that is not the next one; return whether its poses are new."""

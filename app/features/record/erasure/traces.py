@@ -32,6 +32,8 @@ from app.models import (
     TelemetryBatch,
     TelemetryChunk,
     TelemetryStream,
+    TrackerAlignment,
+    TrackerChunk,
 )
 
 OF_SESSIONS = (
@@ -40,6 +42,8 @@ OF_SESSIONS = (
     TelemetryStream,
     ClientReport,
     ClockProbe,
+    TrackerAlignment,
+    TrackerChunk,
     Contact,
     Completion,
     JointErrorCourseRow,

@@ -9,7 +9,12 @@ from app.features.record.headset.goals import (
     state_of_feet,
 )
 from app.features.record.headset.poses import TOPICS, TOUCHES, Touch
-from app.features.record.headset.service import headset_state, participant_info, worn_humanoid
+from app.features.record.headset.service import (
+    headset_state,
+    is_recording,
+    participant_info,
+    worn_humanoid,
+)
 from app.features.record.headset.serving import serve_headset
 
 __all__ = [
@@ -20,6 +25,7 @@ __all__ = [
     "calibration_underway",
     "feet_tracked",
     "headset_state",
+    "is_recording",
     "newest_goals",
     "next_message",
     "participant_info",

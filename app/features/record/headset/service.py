@@ -176,7 +176,7 @@ def headset_state(
         step_index=state.current,
         step_kind=None if step is None else step.kind,
         materialised=state.materialised,
-        recording=active and _is_recording(state, step),
+        recording=is_recording(state, step),
         phase=_phase_order(db, session, state, plan),
         participant=participant_info(db, session),
         avatar_changes=_avatar_order(in_force),
@@ -244,13 +244,14 @@ def _layer_orders(configured: RunningSettings, settings: RunningSettings) -> tup
     )
 
 
-def _is_recording(state: SessionState, step: Step | None) -> bool:
+def is_recording(state: SessionState, step: Step | None) -> bool:
     """Return whether movement is recorded: from entering the body until the debriefing.
 
     Nothing is recorded while the participant refuses to take part.
     """
     is_over = step is not None and not step.spec.records_movement
-    return state.materialised and state.refused_consent is None and not is_over
+    is_active = state.status == "active" and state.materialised
+    return is_active and state.refused_consent is None and not is_over
 
 
 def participant_info(db: Session, session: StudySession) -> ParticipantInfo:

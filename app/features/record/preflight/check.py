@@ -15,7 +15,7 @@ from app.platform.context import AppContext
 from app.texts import Words
 
 Expected = Literal["at_least", "at_most"]
-Unit = Literal["s", "ms", "Hz", "GB", "joints", "phases", "instruments", "texts"]
+Unit = Literal["s", "ms", "mm", "Hz", "GB", "joints", "phases", "instruments", "texts"]
 
 
 @dataclass(frozen=True)

@@ -1761,6 +1761,30 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/trackers": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Session Trackers
+         * @description Return the lab's trackers that a session's headset uses, and how well they are aligned.
+         */
+        readonly get: operations["get_session_trackers_api_sessions__session_id__trackers_get"];
+        /**
+         * Put Session Trackers
+         * @description Let a session's headset use the trackers of a source, or none; it is on the record.
+         */
+        readonly put: operations["put_session_trackers_api_sessions__session_id__trackers_put"];
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/storage": {
         readonly parameters: {
             readonly query?: never;
@@ -3518,6 +3542,34 @@ export interface components {
             readonly value: number | null;
         };
         /**
+         * AlignmentView
+         * @description The alignment in force; lengths in millimetres, the last two over one minute of drift.
+         *
+         *     `delay_ms`: how much later the trackers show a movement than the headset does. `residual_mm`,
+         *     `residual_deg`: median difference of the head by both. `foot_mm`: standard error of a foot.
+         *     `drift_mm_min`: how far the worlds drift apart in a minute. `fitted_s`: seconds since the fit.
+         */
+        readonly AlignmentView: {
+            /** Delay Ms */
+            readonly delay_ms: number;
+            /** Delay Uncertainty Ms */
+            readonly delay_uncertainty_ms: number;
+            /** Drift Mm Min */
+            readonly drift_mm_min: number;
+            /** Fitted S */
+            readonly fitted_s: number;
+            /** Foot Mm */
+            readonly foot_mm: number;
+            /** Outliers */
+            readonly outliers: number;
+            /** Residual Deg */
+            readonly residual_deg: number;
+            /** Residual Mm */
+            readonly residual_mm: number;
+            /** Residual P95 Mm */
+            readonly residual_p95_mm: number;
+        };
+        /**
          * AnswerHint
          * @description A hint about a form's answers for the operator; see the module `hints`.
          *
@@ -4719,7 +4771,7 @@ export interface components {
              * Code
              * @enum {string}
              */
-            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
             /**
              * Details
              * @default []
@@ -4731,7 +4783,7 @@ export interface components {
              * Key
              * @enum {string}
              */
-            readonly key: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "feet" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
+            readonly key: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "lab_trackers" | "feet" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
             /** Limit */
             readonly limit?: number | null;
             readonly override?: components["schemas"]["Override"] | null;
@@ -4741,7 +4793,7 @@ export interface components {
              */
             readonly status: "ok" | "wait" | "fail" | "overridden";
             /** Unit */
-            readonly unit?: ("s" | "ms" | "Hz" | "GB" | "joints" | "phases" | "instruments" | "texts") | null;
+            readonly unit?: ("s" | "ms" | "mm" | "Hz" | "GB" | "joints" | "phases" | "instruments" | "texts") | null;
             /** Value */
             readonly value?: number | null;
         };
@@ -7386,6 +7438,18 @@ export interface components {
             readonly operation: "lock";
         };
         /**
+         * LookedAround
+         * @description How far the wearer has looked around, in degrees; `progress` from 0 to 1 towards a fit.
+         */
+        readonly LookedAround: {
+            /** Nod Deg */
+            readonly nod_deg: number;
+            /** Progress */
+            readonly progress: number;
+            /** Turn Deg */
+            readonly turn_deg: number;
+        };
+        /**
          * LookedInstrument
          * @description The key of the instrument that was made from an offer.
          */
@@ -8121,7 +8185,7 @@ export interface components {
              * Found
              * @enum {string}
              */
-            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
             /** Reason */
             readonly reason: string;
         };
@@ -8134,7 +8198,7 @@ export interface components {
              * Check
              * @enum {string}
              */
-            readonly check: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "feet" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
+            readonly check: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "lab_trackers" | "feet" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
             /** Reason */
             readonly reason: string;
         };
@@ -9760,6 +9824,68 @@ export interface components {
             readonly study_version: number;
         };
         /**
+         * SessionTrackers
+         * @description The trackers that a session's headset uses, and how they lie in its world.
+         *
+         *     `status` is null if none are chosen. `others`: senders of the same name, which are not used.
+         *     `latency_ms`, `latency_p95_ms`: from a packet's arrival to the headset's socket, null before the
+         *     first one. `stored`: poses on disk since the server started, `waiting_lost`: those that were
+         *     given up because the disk was full for minutes. `refits`, `jumps`: since they were chosen.
+         */
+        readonly SessionTrackers: {
+            readonly alignment?: components["schemas"]["AlignmentView"] | null;
+            /** Choices */
+            readonly choices: readonly components["schemas"]["SourceChoice"][];
+            /** Door */
+            readonly door: ("osc" | "natnet" | "json") | null;
+            /**
+             * Jumps
+             * @default 0
+             */
+            readonly jumps: number;
+            /** Latency Ms */
+            readonly latency_ms?: number | null;
+            /** Latency P95 Ms */
+            readonly latency_p95_ms?: number | null;
+            readonly looking?: components["schemas"]["LookedAround"] | null;
+            /**
+             * Others
+             * @default []
+             */
+            readonly others: readonly string[];
+            /** Problem */
+            readonly problem?: ("samples" | "short" | "still" | "turn" | "nod" | "unlike" | "delay") | null;
+            /**
+             * Refits
+             * @default 0
+             */
+            readonly refits: number;
+            /** Source */
+            readonly source: string | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "planned" | "active" | "completed" | "aborted" | "withdrawn";
+            /** Status */
+            readonly status: ("no_reference" | "silent" | "no_headset" | "looking" | "aligned" | "lost") | null;
+            /**
+             * Stored
+             * @default 0
+             */
+            readonly stored: number;
+            /**
+             * Trackers
+             * @default []
+             */
+            readonly trackers: readonly components["schemas"]["WornTracker"][];
+            /**
+             * Waiting Lost
+             * @default 0
+             */
+            readonly waiting_lost: number;
+        };
+        /**
          * SessionView
          * @description Everything the cockpit shows of a session.
          *
@@ -10245,6 +10371,25 @@ export interface components {
              * @enum {string}
              */
             readonly state: "free" | "open" | "completed";
+        };
+        /**
+         * SourceChoice
+         * @description A source that sends now; `limbs`: how many of its trackers are on a limb of the headset's.
+         */
+        readonly SourceChoice: {
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** Has Reference */
+            readonly has_reference: boolean;
+            /** Is Silent */
+            readonly is_silent: boolean;
+            /** Limbs */
+            readonly limbs: number;
+            /** Source */
+            readonly source: string;
         };
         /**
          * SourceView
@@ -11130,6 +11275,16 @@ export interface components {
             readonly up_cm: number;
         };
         /**
+         * TrackersWish
+         * @description The source whose trackers the headset shall use; both fields are null for none.
+         */
+        readonly TrackersWish: {
+            /** Door */
+            readonly door: ("osc" | "natnet" | "json") | null;
+            /** Source */
+            readonly source: string | null;
+        };
+        /**
          * TrackerView
          * @description A tracker or bone of a source; the figures are null until enough samples have arrived.
          *
@@ -11777,6 +11932,22 @@ export interface components {
             readonly title: string;
             /** Version */
             readonly version: number;
+        };
+        /**
+         * WornTracker
+         * @description A tracker on a limb. `used`: the headset has a goal for it, or it is the one on the head.
+         */
+        readonly WornTracker: {
+            /** Limb */
+            readonly limb: string;
+            /** Silent S */
+            readonly silent_s: number | null;
+            /** Tracked */
+            readonly tracked: boolean;
+            /** Tracker */
+            readonly tracker: string;
+            /** Used */
+            readonly used: boolean;
         };
     };
     responses: never;
@@ -15903,6 +16074,90 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["StoredAnswers"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_session_trackers_api_sessions__session_id__trackers_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SessionTrackers"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly put_session_trackers_api_sessions__session_id__trackers_put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["TrackersWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SessionTrackers"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

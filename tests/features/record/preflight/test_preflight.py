@@ -51,6 +51,7 @@ def test_the_checks_of_a_session_that_nobody_has_prepared(lab: Lab) -> None:
         ("frame_rate", "wait", "frame_rate.no_headset"),
         ("clock", "wait", "clock.no_headset"),
         ("trackers", "wait", "trackers.no_movement"),
+        ("lab_trackers", "ok", "lab_trackers.unneeded"),
         ("feet", "wait", "feet.no_headset"),
         ("storage", "ok", "storage.ok"),
         ("disk", "ok", checks["disk"]["code"]),
@@ -252,4 +253,4 @@ def test_sessions_without_participants_need_no_overrides(lab: Lab, kind: str) ->
     session_id = lab.join(kind=kind)["id"]
     reply = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
     assert reply["asks"] is False
-    assert len(reply["checks"]) == 12
+    assert len(reply["checks"]) == 13

@@ -14,6 +14,7 @@ from app.features.record.preflight.checks.device import (
     TRACKERS,
 )
 from app.features.record.preflight.checks.feet import FEET
+from app.features.record.preflight.checks.lab_trackers import LAB_TRACKERS
 from app.features.record.preflight.checks.latency import LATENCY
 from app.features.record.preflight.checks.storage import DISK, STORAGE
 from app.features.record.preflight.checks.study import CONFIGURATION, INSTRUMENTS, LANGUAGE
@@ -25,6 +26,7 @@ CHECKS: tuple[PreflightCheck, ...] = (
     FRAME_RATE,
     CLOCK,
     TRACKERS,
+    LAB_TRACKERS,
     FEET,
     STORAGE,
     DISK,

@@ -1,9 +1,12 @@
-"""Decide what concerns the participant inside the headset: calibrations, and the wish to stop.
+"""Decide what concerns the participant inside the headset: calibrations, trackers, stopping.
 
 A calibration measures the participant's body anew and loses nothing: the step stays, and a running
 phase is paused until the operator resumes it. Between calibrations the operator can shift single
-joints by hand; a new calibration starts without shifts.
+joints by hand; a new calibration starts without shifts. The lab's trackers can be chosen before
+the session starts, too, so that they are there when the participant comes.
 """
+
+from dataclasses import asdict
 
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
@@ -41,6 +44,12 @@ def decide_participant(state: SessionState, command: c.Command) -> list[e.Event]
     match command:
         case c.ReportCalibration():
             return _report(state, command)
+        case c.ChooseTrackers():
+            return _choose_trackers(state, command)
+        case c.ReportAlignment():
+            is_running = state.status in (SessionStatus.PLANNED, SessionStatus.ACTIVE)
+            # It may have been computed while the trackers were changed or the session ended.
+            return [e.TrackersAligned(**asdict(command))] if is_running and state.trackers else []
         case c.AskToStop():
             if state.status is not SessionStatus.ACTIVE or state.stop_asked:
                 return []
@@ -62,6 +71,30 @@ def pause_running(state: SessionState) -> list[e.Event]:
     if phase is None or phase.status is not PhaseStatus.RUNNING or phase.pausing:
         return []
     return [e.PauseRequested(phase_id=phase.phase_id)]
+
+
+def _choose_trackers(state: SessionState, command: c.ChooseTrackers) -> list[e.Event]:
+    """Return the event of a choice of trackers; none if they are those already in use."""
+    if state.status not in (SessionStatus.PLANNED, SessionStatus.ACTIVE):
+        raise Refused(
+            f"the session is {state.status}",
+            value=state.status,
+            valid=[SessionStatus.PLANNED, SessionStatus.ACTIVE],
+            remedy="It has ended, so its headset uses no trackers any more.",
+        )
+    before = None if state.trackers is None else (state.trackers.door, state.trackers.source)
+    wish = None if command.door is None else (command.door, command.source)
+    if before == wish:
+        return []
+    phase = state.phase
+    return [
+        e.TrackersChosen(
+            door=command.door,
+            source=command.source,
+            phase_id=None if phase is None else phase.phase_id,
+            deviation=phase is not None,
+        )
+    ]
 
 
 def _report(state: SessionState, command: c.ReportCalibration) -> list[e.Event]:

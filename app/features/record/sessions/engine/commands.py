@@ -233,6 +233,28 @@ class ReportCalibration(Command):
 
 
 @dataclass(frozen=True, kw_only=True)
+class ChooseTrackers(Command):
+    """Let the headset use the lab's trackers of a source; both fields are None for none."""
+
+    door: str | None
+    source: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportAlignment(Command):
+    """Record a change of how the trackers lie in the headset's world; see `TrackersAligned`."""
+
+    change: str
+    alignment_id: str
+    client_t_s: float
+    delay_s: float | None = None
+    residual_m: float | None = None
+    uncertainty_m: float | None = None
+    offset_m: float | None = None
+    offset_rad: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class AskToStop(Command):
     """Record that the participant wants to stop, and pause a running phase."""
 

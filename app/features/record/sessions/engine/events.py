@@ -312,6 +312,42 @@ class CalibrationReported(Event):
 
 
 @dataclass(frozen=True, kw_only=True)
+class TrackersChosen(Event):
+    """Somebody chose the lab's trackers that the headset uses; both fields are None for none.
+
+    `door` and `source` name them as the page of trackers does. `deviation`: a phase was in
+    progress.
+    """
+
+    type = "trackers_chosen"
+    door: str | None
+    source: str | None
+    phase_id: int | None = None
+    deviation: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackersAligned(Event):
+    """How the trackers lie in the headset's world has become known, or no longer holds.
+
+    `change`: `first` and `recentred` bring an alignment, `lost` (the headset's world jumped) and
+    `moved` (the tracker on the head did) end it. All of its figures are stored under
+    `alignment_id`. `delay_s`, `residual_m` (median) and `uncertainty_m` (of a foot) are those of
+    the alignment that is known, `offset_m` and `offset_rad` the size of the jump.
+    """
+
+    type = "trackers_aligned"
+    change: str
+    alignment_id: str
+    client_t_s: float
+    delay_s: float | None = None
+    residual_m: float | None = None
+    uncertainty_m: float | None = None
+    offset_m: float | None = None
+    offset_rad: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class StopAsked(Event):
     """The participant wants to stop, and said so inside the headset; a running phase is paused."""
 
@@ -463,6 +499,8 @@ EVENT_TYPES: dict[str, type[Event]] = {
         CalibrationRequested,
         TrackerShifted,
         CalibrationReported,
+        TrackersChosen,
+        TrackersAligned,
         StopAsked,
         StopClosed,
         BlindingLifted,

@@ -13,6 +13,7 @@ from app.features.record.sessions.engine.state import (
     SessionStatus,
     StepState,
     StepStatus,
+    TrackersState,
 )
 
 
@@ -56,6 +57,7 @@ def _applied(state: SessionState, event: e.Event) -> SessionState:
                 avatar_changes=None,
                 calibration=None,
                 stop_asked=False,
+                trackers=None,
             )
         case _ if isinstance(event, MARKS):
             return _marked(state, event)
@@ -75,6 +77,7 @@ MARKS = (
     e.CalibrationRequested,
     e.TrackerShifted,
     e.CalibrationReported,
+    e.TrackersChosen,
     e.StopAsked,
     e.StopClosed,
     e.DataErased,
@@ -99,10 +102,16 @@ def _marked(state: SessionState, event: e.Event) -> SessionState:
             return replace(state, avatar_changes=_avatar_changed(state, event))
         case e.CalibrationRequested() | e.TrackerShifted() | e.CalibrationReported():
             return replace(state, calibration=_calibration(state, event))
+        case e.TrackersChosen(door=door, source=source):
+            return replace(state, trackers=_chosen(door, source))
         case e.StopAsked() | e.StopClosed():
             return _stop_wish(state, is_open=isinstance(event, e.StopAsked))
         case _:
             return replace(state, erased=True)
+
+
+def _chosen(door: str | None, source: str | None) -> TrackersState | None:
+    return None if door is None or source is None else TrackersState(door, source)
 
 
 def _stop_wish(state: SessionState, *, is_open: bool) -> SessionState:

@@ -113,6 +113,14 @@ class CalibrationState:
 
 
 @dataclass(frozen=True)
+class TrackersState:
+    """The lab's trackers that the headset uses: the door and the label of their source."""
+
+    door: str
+    source: str
+
+
+@dataclass(frozen=True)
 class SessionState:
     """The state of a session. `version` is the number of events folded so far.
 
@@ -122,7 +130,8 @@ class SessionState:
     participant has asked a question that has not been answered yet. `erased`: the participant's
     data were erased, and nothing more can be added. `avatar_changes`: None until the running avatar
     is changed, and after the session has ended; `calibration` likewise until something is ordered.
-    `stop_asked`: the participant wants to stop, and the experimenter has not come yet.
+    `stop_asked`: the participant wants to stop, and the experimenter has not come yet. `trackers`:
+    None while the headset uses none of the lab's, and after the session has ended.
     """
 
     version: int
@@ -139,6 +148,7 @@ class SessionState:
     avatar_changes: AvatarChangesState | None = None
     calibration: CalibrationState | None = None
     stop_asked: bool = False
+    trackers: TrackersState | None = None
 
     @property
     def next_phase_id(self) -> int:

@@ -1,0 +1,1 @@
+"""Tests of the trackers that a session's headset uses."""
