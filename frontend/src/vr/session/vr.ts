@@ -14,7 +14,14 @@ import {
 import type { Measures } from "../calibration";
 import { layoutsOf } from "../tasks";
 import type { TelemetryClient } from "../telemetry";
-import { Boundary, type TrackedFrame, type TrackingSource, WebXrTracking } from "../tracking";
+import {
+  Boundary,
+  ServerTrackers,
+  type TrackedFrame,
+  TrackerLink,
+  type TrackingSource,
+  WebXrTracking,
+} from "../tracking";
 import { armStretchOf } from "../tracking/skeleton";
 import { paletteOf, STANDARD, World } from "../world";
 import { loadModel, requestAvatars } from "./avatars";
@@ -46,6 +53,8 @@ export class Vr {
   readonly #headset: Headset;
   readonly #panels: VisitPanels;
   readonly #tracking: WebXrTracking;
+  readonly #lab = new ServerTrackers();
+  #labLink: TrackerLink | null = null;
   #bodies: BodiesInWorker | null = null;
   #screen: OnScreen | null = null;
   #session: XRSession | null = null;
@@ -67,16 +76,20 @@ export class Vr {
     const layouts = layoutsOf(tasks);
     const palette = appearance === undefined ? STANDARD : paletteOf(appearance);
     this.#world = new World({ layouts, palette, language });
-    this.#tracking = new WebXrTracking({
-      onSpace: (space) => {
-        this.#renderer.xr.setReferenceSpace(space);
-        this.#headset.calibrating.keepSquare(this.#tracking.roomFromSquare);
-        // Seen from elsewhere from one frame to the next.
-        this.#panels.cut();
-        this.#panels.recentre();
+    this.#tracking = new WebXrTracking(
+      {
+        onSpace: (space) => {
+          this.#renderer.xr.setReferenceSpace(space);
+          this.#headset.calibrating.keepSquare(this.#tracking.roomFromSquare);
+          // Seen from elsewhere from one frame to the next.
+          this.#panels.cut();
+          this.#panels.recentre();
+        },
+        onReset: (isKept) => this.#headset.recentred(isKept),
       },
-      onReset: (isKept) => this.#headset.recentred(isKept),
-    });
+      undefined,
+      this.#lab,
+    );
     this.#panels = new VisitPanels({
       telemetry,
       world: this.#world,
@@ -123,6 +136,7 @@ export class Vr {
     );
     const space = this.#renderer.xr.getReferenceSpace();
     if (space !== null) this.#tracking.begin(session, space);
+    this.#labLink ??= openTrackers(this.#parts.token, this.#lab);
     this.#boundary = await Boundary.of(session);
     this.#guardedFrame = 0;
   }
@@ -141,6 +155,7 @@ export class Vr {
   /** End VR, if it is shown, and free what it used. */
   dispose(): void {
     void this.#session?.end().catch(() => undefined);
+    this.#labLink?.close();
     this.#headset.dispose();
     this.#panels.dispose();
     this.#world.dispose();
@@ -313,6 +328,13 @@ export class Vr {
       },
     };
   }
+}
+
+/** Open the socket over which the lab's trackers come to this headset. */
+function openTrackers(token: string, trackers: ServerTrackers): TrackerLink {
+  const { protocol, host } = window.location;
+  const url = `${protocol === "https:" ? "wss" : "ws"}://${host}/api/vr/trackers`;
+  return new TrackerLink({ url, token, trackers, clock: () => performance.now() / 1000 });
 }
 
 /** The study on a screen: where it is drawn, and what moves the participant. */

@@ -10,6 +10,8 @@ export {
   type TrackingWay,
   waysForFeet,
 } from "./devices";
+export { TrackerLink } from "./server/link";
+export { ServerTrackers } from "./server/trackers";
 export { SteadyGoals } from "./steady";
 export type {
   GoalPart,

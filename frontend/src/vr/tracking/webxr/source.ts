@@ -5,7 +5,8 @@
  * The source follows what is there, frame by frame: people put controllers down and take them up
  * again. Its `kind` names the best of what is there: shins with controllers of their own (`tracked-sources`,
  * WebXR's way for controllers that are not held), then the browser's body tracking, then tracked
- * hands, then controllers. `allow` leaves ways out, such as the operator's choice.
+ * hands, then controllers. `allow` leaves ways out, such as the operator's choice. The lab's trackers
+ * that the server brings go before the legs that the device itself knows.
  */
 import type { Place } from "@shared/avatar/hips";
 import { type DeviceKey, legsOfBodyTracking } from "../devices";
@@ -19,6 +20,7 @@ import {
   set,
 } from "../frameBuffer";
 import { placeOf } from "../places";
+import type { ServerTrackers } from "../server/trackers";
 import type { GoalPart, GoalState, SourceKind, TrackedFrame, TrackingSource } from "../tracked";
 import { BodyReader } from "./body";
 import { HandReader } from "./hand";
@@ -60,22 +62,26 @@ export class XrSource implements TrackingSource {
   private readonly body = new BodyReader();
   private readonly bodyLegs: GoalState;
   private allowed: ReadonlySet<XrWay> = new Set(XR_WAYS);
-  private seen: XrWay = "controllers";
+  private seen: XrWay | "server_trackers" = "controllers";
 
   constructor(
     private readonly session: XRSession,
     private readonly room: Room,
     device: DeviceKey,
+    private readonly lab: ServerTrackers | null = null,
   ) {
     this.bodyLegs = legsOfBodyTracking(device);
   }
 
-  get kind(): XrWay {
+  get kind(): XrWay | "server_trackers" {
     return this.seen;
   }
 
   /** Legs that are made up from the upper body are not measured. */
   get measures(): ReadonlySet<GoalPart> {
+    if (this.seen === "server_trackers") {
+      return this.buffer.parts.Hips.device === "tracker" ? WITH_BODY : WITH_SHINS;
+    }
     if (this.seen === "shin_controllers") return WITH_SHINS;
     return this.seen === "body_tracking" && this.bodyLegs === "tracked" ? WITH_BODY : WITHOUT_LEGS;
   }
@@ -109,6 +115,7 @@ export class XrSource implements TrackingSource {
     if (this.allowed.has("body_tracking") && this.readBody(frame)) this.seen = "body_tracking";
     if (this.allowed.has("shin_controllers") && this.readShins(frame))
       this.seen = "shin_controllers";
+    if (this.lab?.read(buffer) === true) this.seen = "server_trackers";
     inferHips(buffer);
     return buffer;
   }

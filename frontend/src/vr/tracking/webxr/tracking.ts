@@ -6,6 +6,7 @@ import type { Place } from "@shared/avatar/hips";
 import { deviceKeyOf } from "../devices";
 import { clear, frameBuffer } from "../frameBuffer";
 import { AT_ORIGIN, composed } from "../places";
+import type { ServerTrackers } from "../server/trackers";
 import type { GoalPart, SourceKind, TrackedFrame, TrackingSource } from "../tracked";
 import { Room, type RoomListener } from "./room";
 import { XR_WAYS, XrSource, type XrWay } from "./source";
@@ -23,6 +24,8 @@ export class WebXrTracking implements TrackingSource {
   constructor(
     private readonly listener: Partial<RoomListener> = {},
     private readonly userAgent: string = globalThis.navigator?.userAgent ?? "",
+    /** The lab's trackers, if the server may bring any. */
+    private readonly lab: ServerTrackers | null = null,
   ) {}
 
   /** Track by a session; `floor` is its floor space as the device gives it. */
@@ -36,7 +39,7 @@ export class WebXrTracking implements TrackingSource {
       onReset: (isKept) => this.listener.onReset?.(isKept),
     });
     this.currentRoom = room;
-    this.source = new XrSource(session, room, deviceKeyOf(this.userAgent));
+    this.source = new XrSource(session, room, deviceKeyOf(this.userAgent), this.lab);
     this.source.allow(this.ways);
     // The device keeps its room from session to session; so does the square in it.
     if (this.square !== AT_ORIGIN) room.placeSquare(this.square);
@@ -59,7 +62,11 @@ export class WebXrTracking implements TrackingSource {
 
   /** Move the start square to there, in the world as it is read now. */
   moveSquare(worldFromSquare: Place): void {
-    this.currentRoom?.placeSquare(composed(this.currentRoom.roomFromSquare, worldFromSquare));
+    const room = this.currentRoom;
+    if (room === null) return;
+    const before = room.roomFromSquare;
+    room.placeSquare(composed(before, worldFromSquare));
+    this.lab?.squareMoved(before, room.roomFromSquare);
   }
 
   get kind(): SourceKind {
