@@ -142,6 +142,14 @@ export const trackersQuery = queryOptions({
   refetchInterval: 1000,
 });
 
+/** Asked again every second: the operator watches how the participant looks around. */
+export const sessionTrackersQuery = (sessionId: string) =>
+  queryOptions({
+    queryKey: ["session-trackers", sessionId],
+    queryFn: () => trackers.ofSession(sessionId),
+    refetchInterval: 1000,
+  });
+
 export const peopleQuery = queryOptions({ queryKey: ["people"], queryFn: people.list });
 
 export const invitationsQuery = queryOptions({

@@ -38,6 +38,7 @@ import { CurrentStep } from "./step/CurrentStep";
 import { HeldCard, RefusedCard } from "./step/HeldCard";
 import { OperatorEntry } from "./step/OperatorEntry";
 import { ReasonDialog } from "./step/ReasonDialog";
+import { LabTrackersPanel } from "./trackers/LabTrackersPanel";
 
 /** Only one of them is ever allowed. Pausing does not require a reason: it has to be quick. */
 const PAUSING = ["pause", "resume"] as const;
@@ -155,6 +156,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       </div>
       <aside className={classes.side} data-tour="side" aria-label={t("side.label")}>
         {!ended && can("run") && <DevicesPanel session={session} />}
+        {!ended && can("run") && <LabTrackersPanel session={session} />}
         {!ended && isChangeable(session) && (
           <AvatarPanel
             session={session}

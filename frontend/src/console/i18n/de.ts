@@ -5,6 +5,7 @@ import { bodyPanelDe } from "../cockpit/body/texts";
 import { sideDe } from "../cockpit/record/texts";
 import { commandsDe } from "../cockpit/session/texts";
 import { sessionDe } from "../cockpit/step/texts";
+import { labTrackersDe } from "../cockpit/trackers/texts";
 import type { en } from "./en";
 
 export const de: Record<keyof typeof en, string> = {
@@ -13,6 +14,7 @@ export const de: Record<keyof typeof en, string> = {
   ...commandsDe,
   ...sessionDe,
   ...bodyPanelDe,
+  ...labTrackersDe,
   ...sideDe,
   "app.name": "Reembody",
   "app.studies": "Studien",

@@ -5,6 +5,7 @@ import { bodyPanelEn } from "../cockpit/body/texts";
 import { sideEn } from "../cockpit/record/texts";
 import { commandsEn } from "../cockpit/session/texts";
 import { sessionEn } from "../cockpit/step/texts";
+import { labTrackersEn } from "../cockpit/trackers/texts";
 
 export const en = {
   ...formEn,
@@ -12,6 +13,7 @@ export const en = {
   ...commandsEn,
   ...sessionEn,
   ...bodyPanelEn,
+  ...labTrackersEn,
   ...sideEn,
   "app.name": "Reembody",
   "app.studies": "Studies",

@@ -10,6 +10,8 @@ export type LimbWish = Schemas["LimbWish"];
 export type Source = Schemas["SourceView"];
 export type Tracker = Schemas["TrackerView"];
 
+export type SessionTrackers = Schemas["SessionTrackers"];
+
 export const trackers = {
   get: () => answer<Trackers>(server.GET("/api/trackers")),
   setDoor: (door: Door["door"], wish: DoorWish) =>
@@ -17,4 +19,16 @@ export const trackers = {
       server.PUT("/api/trackers/doors/{door}", { params: { path: { door } }, body: wish }),
     ),
   setLimb: (wish: LimbWish) => answer<Trackers>(server.PUT("/api/trackers/limbs", { body: wish })),
+  /** Those that a session's headset uses. */
+  ofSession: (session_id: string) =>
+    answer<SessionTrackers>(
+      server.GET("/api/sessions/{session_id}/trackers", { params: { path: { session_id } } }),
+    ),
+  choose: (session_id: string, wish: Pick<SessionTrackers, "door" | "source">) =>
+    answer<SessionTrackers>(
+      server.PUT("/api/sessions/{session_id}/trackers", {
+        params: { path: { session_id } },
+        body: wish,
+      }),
+    ),
 };
