@@ -98,6 +98,7 @@ export class Vr {
       onCalibration: (target) => this.#headset.calibrating.press(target),
       onPressed: (side) => this.#pulse(side),
       isWorn: () => this.#screen === null,
+      looksAround: () => this.#lab.wantsLookingAround,
     });
     this.#headset = new Headset({
       telemetry,

@@ -100,6 +100,9 @@ export const de: Record<keyof typeof en, string> = {
   "aloud.title": "Bitte antworten Sie mündlich",
   "aloud.body":
     "Die Versuchsleitung stellt Ihnen die Fragen und schreibt auf, was Sie sagen. Sie können das Headset aufbehalten.",
+  "lookAround.title": "Bitte sehen Sie sich um",
+  "lookAround.body":
+    "Drehen Sie den Kopf langsam nach links und rechts, sehen Sie dann nach oben und unten, bis dieses Schild verschwindet. So werden Ihre Tracker gefunden.",
   "feet.body":
     "Diese Aufgabe kann nicht beginnen: Ihre Füße werden gerade nicht gemessen. Die Versuchsleitung weiß Bescheid.",
   "elsewhere.title": "Bitte sehen Sie auf das Tablet",

@@ -96,6 +96,9 @@ export const en = {
   "aloud.title": "Please answer aloud",
   "aloud.body":
     "The experimenter asks you the questions and writes down what you say. You can keep the headset on.",
+  "lookAround.title": "Please look around",
+  "lookAround.body":
+    "Turn your head slowly to the left and right, then look up and down, until this sign disappears. So your trackers are found.",
   "feet.body":
     "This task cannot start: your feet are not measured at the moment. The experimenter has been told.",
   "elsewhere.title": "Please look at the tablet",

@@ -116,6 +116,8 @@ export class Contents {
         return still(
           prompt("aloud", words("aloud.title"), [step.title ?? "", words("aloud.body")]),
         );
+      case "look_around":
+        return still(prompt("look around", words("lookAround.title"), [words("lookAround.body")]));
       case "feet":
         return still(prompt("feet", title, [], words("feet.body")));
       case "take_off":

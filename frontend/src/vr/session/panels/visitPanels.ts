@@ -42,6 +42,8 @@ export interface VisitPanelsParts {
   readonly onPressed?: (side: "left" | "right" | null) => void;
   /** False on a screen, which nobody can take off. */
   readonly isWorn: () => boolean;
+  /** Whether the wearer has to look around, so that the lab's trackers are aligned. */
+  readonly looksAround?: () => boolean;
 }
 
 /** One frame, as the loop knows it. */
@@ -312,6 +314,8 @@ export class VisitPanels {
     note(10, holdsController);
     note(11, this.#contents.read);
     note(12, this.#shown);
+    const looksAround = this.#parts.looksAround?.() ?? false;
+    note(13, looksAround);
     if (!isChanged) return;
     const situation: Situation = {
       place,
@@ -320,6 +324,7 @@ export class VisitPanels {
       stepIndex: state.step_index,
       phase,
       areFeetTracked,
+      looksAround,
       secondsLeft,
       stop,
       isOffline,

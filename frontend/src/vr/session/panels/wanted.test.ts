@@ -20,6 +20,7 @@ const CALM: Situation = {
   stepIndex: 4,
   phase: null,
   areFeetTracked: true,
+  looksAround: false,
   secondsLeft: 0,
   stop: null,
   isOffline: false,
@@ -62,6 +63,13 @@ describe("the panel that is wanted", () => {
     expect(kind({ isOffline: true }, form)).toBe("form");
     expect(kind({ isOffline: true })).toBe("offline");
     expect(kind({ isOffline: true, phase: "running" })).toBe("nothing");
+  });
+
+  it("asks to look around until trackers are aligned, between whatever else is to be done", () => {
+    expect(kind({ looksAround: true })).toBe("look_around");
+    expect(kind({ looksAround: true, stepKind: null, place: "standby" })).toBe("look_around");
+    expect(kind({ looksAround: true }, { form: "a#1", answer: "headset" })).toBe("form");
+    expect(kind({ looksAround: true, phase: "running" })).toBe("nothing");
   });
 
   it("says that a foot task cannot start while the feet are not measured", () => {

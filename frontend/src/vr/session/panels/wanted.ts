@@ -18,6 +18,8 @@ export interface Situation {
   readonly phase: "preparing" | "running" | "walk_back" | "frozen" | "paused" | null;
   /** Whether the headset measures both feet now. */
   readonly areFeetTracked: boolean;
+  /** The lab's trackers are not aligned yet: the wearer has to look around. */
+  readonly looksAround: boolean;
   /** Whole seconds until a phase begins; 0 otherwise. */
   readonly secondsLeft: number;
   /** How far the call of somebody who has stopped has come; null while nobody has. */
@@ -34,7 +36,7 @@ export type Wanted =
   | { readonly kind: "edge" }
   | { readonly kind: "boundary"; readonly problem: "missing" | "too_small" }
   | { readonly kind: "pause"; readonly pause: Pause }
-  | { readonly kind: "offline" | "finished" | "standby" | "aloud" | "stepping_in" }
+  | { readonly kind: "offline" | "finished" | "standby" | "aloud" | "stepping_in" | "look_around" }
   | { readonly kind: "form"; readonly form: string }
   | { readonly kind: "reading"; readonly stepIndex: number; readonly text: string }
   | { readonly kind: "take_off"; readonly isForm: boolean }
@@ -57,6 +59,9 @@ export function wanted(now: Situation): Wanted {
   if (now.isOffline && waitsForServer && order?.form == null) return { kind: "offline" };
   if (phase !== null) return inPhase(now, phase);
   if (order === null) return now.place === "stepping_in" ? { kind: "stepping_in" } : NOTHING;
+  // Whoever has something to answer, or to do outside, looks around afterwards.
+  const isBusy = order.held || order.headset_off || order.answer !== null || order.acknowledge;
+  if (now.looksAround && !isBusy) return { kind: "look_around" };
   if (now.boundary !== null && now.place !== "acting" && !order.headset_off) {
     return { kind: "boundary", problem: now.boundary };
   }

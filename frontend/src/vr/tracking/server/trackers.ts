@@ -36,9 +36,9 @@ export class ServerTrackers {
   private sentS = Number.NEGATIVE_INFINITY;
   private lastS = Number.NEGATIVE_INFINITY;
 
-  /** Whether the server knows how the trackers lie in this world. */
-  get areAligned(): boolean {
-    return this.isAligned;
+  /** Whether trackers were chosen that are not aligned: the wearer has to look around. */
+  get wantsLookingAround(): boolean {
+    return this.send !== null && !this.isAligned;
   }
 
   /** Say from now on where the head is; null: the server does not want to know. */
