@@ -25,6 +25,11 @@ def fingers_path(participant_code: str, session_id: str) -> str:
     return f"fingers/{safe_name(participant_code)}_{safe_name(session_id)}.csv"
 
 
+def trackers_path(participant_code: str, session_id: str) -> str:
+    """Return the path, in an export, of what the lab's trackers sent for a session."""
+    return f"trackers/{safe_name(participant_code)}_{safe_name(session_id)}.csv"
+
+
 def receipt_path(participant_code: str, session_id: str) -> str:
     """Return the path, in an export, of the receipt of a session."""
     return f"receipts/{safe_name(participant_code)}_{safe_name(session_id)}.json"

@@ -23,6 +23,7 @@ MORE = (
     "clock_mapping",
     "goal_states",
     "body_calibrations",
+    "tracker_alignments",
     "calibrations",
     "headset_tests",
     "codebook",

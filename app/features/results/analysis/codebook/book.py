@@ -25,6 +25,7 @@ from app.features.results.analysis.codebook.movement import (
 from app.features.results.analysis.codebook.quality import ALARMS, DOUBTS, QUALITY
 from app.features.results.analysis.codebook.questionnaires import ANSWERS, CORRECTIONS, SCORES
 from app.features.results.analysis.codebook.sessions import EVENTS, PHASES, SESSIONS
+from app.features.results.analysis.codebook.trackers import TRACKER_ALIGNMENTS, TRACKER_SAMPLES
 from app.science.skeleton import FINGER_PARTS, JOINT_NAMES
 
 _B = Describe("codebook")
@@ -45,12 +46,14 @@ TABLES: dict[str, str] = {
     "clock_mapping": "One row per segment of a headset's clock, brought to the server's.",
     "goal_states": "One row per change in how a headset knew the parts of the body.",
     "body_calibrations": "One row per calibration of a headset to the participant, and part.",
+    "tracker_alignments": "One row per alignment of the lab's trackers with a headset, or its end.",
     "events": "One row per event of a session's log: the audit trail.",
     "calibrations": "One row per measurement of the equipment's own delay; of no one session.",
     "headset_tests": "One row per self-test of a headset and figure; of no one session.",
     "codebook": "One row per column of the other files.",
     "samples": "One file per session, one row per frame: target and actual body side by side.",
     "fingers": "One file per session that recorded fingers; one row per frame, as in samples.",
+    "trackers": "One file per session that used the lab's trackers; one row per pose, as it came.",
 }
 """The description of each table's rows, in the order of the export."""
 
@@ -71,12 +74,14 @@ CODEBOOK: tuple[Column, ...] = (
     *CLOCK_MAPPING,
     *GOAL_STATES,
     *BODY_CALIBRATIONS,
+    *TRACKER_ALIGNMENTS,
     *EVENTS,
     *CALIBRATIONS,
     *HEADSET_TESTS,
     _B.text(
         "table",
-        "The file that the column is in; samples and fingers stand for all files in these folders.",
+        "The file that the column is in; samples, fingers and trackers stand for all files in "
+        "these folders.",
     ),
     _B.text("column", "Name of the column."),
     _B.text("meaning", "What it holds."),
@@ -85,6 +90,7 @@ CODEBOOK: tuple[Column, ...] = (
     _B.text("levels", "Its range, or the words it can hold."),
     *SAMPLES,
     *FINGER_SAMPLES,
+    *TRACKER_SAMPLES,
 )
 PREFACE = """\
 # Data dictionary

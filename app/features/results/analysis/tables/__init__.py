@@ -40,6 +40,11 @@ from app.features.results.analysis.tables.tasks import (
     contact_spans_table,
     contacts_table,
 )
+from app.features.results.analysis.tables.trackers import (
+    has_tracker_samples,
+    tracker_alignments_table,
+    tracker_samples,
+)
 
 __all__ = [
     "KINDS",
@@ -58,6 +63,7 @@ __all__ = [
     "events_table",
     "goal_states_table",
     "has_rules",
+    "has_tracker_samples",
     "headset_tests_table",
     "joint_angles_table",
     "joint_error_course_table",
@@ -69,4 +75,6 @@ __all__ = [
     "run_clocks",
     "scores_table",
     "sessions_table",
+    "tracker_alignments_table",
+    "tracker_samples",
 ]

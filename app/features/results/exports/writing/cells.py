@@ -8,7 +8,7 @@ numbers, including negative ones, stay numbers.
 import csv
 import io
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import pandas as pd
@@ -30,12 +30,20 @@ def csv_pieces(table: str, frame: pd.DataFrame, *, rules: bool = True) -> Iterat
 
     `rules`: include the columns that exist only for studies with `valid_when` rules.
     """
+    yield from csv_pieces_of_many(table, [frame], rules=rules)
+
+
+def csv_pieces_of_many(
+    table: str, frames: Iterable[pd.DataFrame], *, rules: bool = True
+) -> Iterator[bytes]:
+    """Yield a table that comes in several frames as one CSV, as `csv_pieces` does of one."""
     columns = columns_of(table, rules=rules)
     yield _lines([[column.name for column in columns]])
-    for first in range(0, len(frame), ROWS_PER_PIECE):
-        part = frame.iloc[first : first + ROWS_PER_PIECE]
-        cells = [_cells(part[column.name].tolist(), column.type) for column in columns]
-        yield _lines(list(zip(*cells, strict=True)))
+    for frame in frames:
+        for first in range(0, len(frame), ROWS_PER_PIECE):
+            part = frame.iloc[first : first + ROWS_PER_PIECE]
+            cells = [_cells(part[column.name].tolist(), column.type) for column in columns]
+            yield _lines(list(zip(*cells, strict=True)))
 
 
 def plain_pieces(names: Sequence[str], rows: Iterator[Sequence[Any]]) -> Iterator[bytes]:

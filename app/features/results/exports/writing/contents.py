@@ -36,6 +36,7 @@ from app.features.results.analysis.tables import (
     events_table,
     goal_states_table,
     has_rules,
+    has_tracker_samples,
     headset_tests_table,
     joint_error_course_table,
     joint_errors_table,
@@ -43,10 +44,21 @@ from app.features.results.analysis.tables import (
     quality_table,
     scores_table,
     sessions_table,
+    tracker_alignments_table,
+    tracker_samples,
 )
-from app.features.results.exports.names import fingers_path, receipt_path, samples_path
+from app.features.results.exports.names import (
+    fingers_path,
+    receipt_path,
+    samples_path,
+    trackers_path,
+)
 from app.features.results.exports.writing.blinding import without_conditions
-from app.features.results.exports.writing.cells import csv_pieces, plain_pieces
+from app.features.results.exports.writing.cells import (
+    csv_pieces,
+    csv_pieces_of_many,
+    plain_pieces,
+)
 from app.features.results.exports.writing.readme import FileCount, Origin, readme_text
 from app.features.results.exports.writing.samples import SampleFile
 from app.features.results.imports import import_files
@@ -72,6 +84,7 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "clock_mapping": clock_mapping_table,
     "goal_states": goal_states_table,
     "body_calibrations": body_calibrations_table,
+    "tracker_alignments": tracker_alignments_table,
 }
 EQUIPMENT_FILES: dict[str, Callable[[Session], pd.DataFrame]] = {
     "calibrations": calibrations_table,
@@ -82,6 +95,7 @@ README = "README.txt"
 FOLDERS = {
     "samples": ".csv",
     "fingers": ".csv",
+    "trackers": ".csv",
     "receipts": ".json",
     "protocol": ".yaml",
     "imported": ".csv",
@@ -153,20 +167,32 @@ class Contents:
         rows = sessions[["participant_code", "session_id", "simulated", "avatar"]]
         for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
             if self.movement:
-                samples = SampleFile(
-                    *(self.db, session_id, bool(simulated), avatar),
-                    blinded=session_id in self.hidden,
-                )
-                yield self._member(samples_path(code, session_id), samples.pieces())
-                if self._has_fingers(session_id):
-                    fingers = replace(samples, fingers=True)
-                    yield self._member(fingers_path(code, session_id), fingers.pieces())
+                yield from self._movement(code, session_id, bool(simulated), avatar)
             yield self._member(receipt_path(code, session_id), self._receipt(session_id))
         # Imported answers stay apart from the tables; a participant's own copy has only sessions.
         if self.kind in ("people", "all") and self.only is None:
             for name, body in import_files(self.db, study):
                 yield self._member(f"imported/{name}", iter([body]))
         yield Member(README, iter([self._readme(study, used, sessions, rules=rules).encode()]))
+
+    def _movement(
+        self,
+        code: str,
+        session_id: str,
+        simulated: bool,  # noqa: FBT001 - a column of the table
+        avatar: str,
+    ) -> Iterator[Member]:
+        """Yield what was recorded of a session's movement: bodies, fingers, the lab's trackers."""
+        samples = SampleFile(
+            *(self.db, session_id, simulated, avatar), blinded=session_id in self.hidden
+        )
+        yield self._member(samples_path(code, session_id), samples.pieces())
+        if self._has_fingers(session_id):
+            fingers = replace(samples, fingers=True)
+            yield self._member(fingers_path(code, session_id), fingers.pieces())
+        if has_tracker_samples(self.db, session_id):
+            sent = csv_pieces_of_many("trackers", tracker_samples(self.db, session_id))
+            yield self._member(trackers_path(code, session_id), sent)
 
     def _table(
         self, name: str, table: Callable[[Session, str, Kind], pd.DataFrame]

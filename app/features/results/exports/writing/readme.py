@@ -35,6 +35,10 @@ Reading the files
   as they came: NaN and Infinity are values that were sent, and such rows are flagged.
   fingers/, where it is there, holds the same for the fingers of sessions that recorded them, joined
   on the same epoch and seq. The values of a hand that was not tracked are NaN.
+  trackers/, where it is there, holds what the lab's trackers sent for a session and where its
+  headset said that the eyes were, one row per pose, in the axes of each source and with three
+  times: the source's own, the arrival, and the first on the server's clock.
+  tracker_alignments.csv says how these axes lay in the headset's.
   receipts/ holds one file per session that says how many frames were made, stored and are missing,
   whether the event log was changed, whether the completions follow from the contacts, and which
   latency the avatar really had. "complete": true means that nothing is missing.

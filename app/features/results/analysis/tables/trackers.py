@@ -1,0 +1,101 @@
+"""The tables of the lab's trackers in sessions: how the worlds lay, and what was sent."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.design.studies import study_by_key
+from app.features.record.lab_trackers import decode_samples
+from app.features.results.analysis.codebook import columns_of
+from app.features.results.analysis.schemas import Kind
+from app.features.results.analysis.tables.context import finished, of_kind, sessions_context
+from app.models import StudySession, TrackerAlignment, TrackerChunk
+
+_WORLD = (*(f"world_{axis}_m" for axis in "xyz"), *(f"world_q{axis}" for axis in "wxyz"))
+_NS_PER_S = 1e9
+
+
+def tracker_alignments_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """Return one row per alignment of a session's trackers, or end of one, in order of time."""
+    query = (
+        select(TrackerAlignment)
+        .join(StudySession, StudySession.id == TrackerAlignment.session_id)
+        .where(of_kind(study_by_key(db, study_key), kind))
+        .order_by(TrackerAlignment.session_id, TrackerAlignment.at, TrackerAlignment.id)
+    )
+    context = sessions_context(db, study_key, kind)
+    own = [one.name for one in columns_of("tracker_alignments") if one.name not in context]
+    rows = [_alignment(row) for row in db.scalars(query)]
+    frame = pd.DataFrame(rows, columns=["session_id", *own], dtype=object)
+    return finished(context.merge(frame, on="session_id"), "tracker_alignments")
+
+
+def _alignment(row: TrackerAlignment) -> dict[str, Any]:
+    found: dict[str, Any] = row.figures.get("alignment") or {}
+    jump: dict[str, Any] = row.figures.get("jump") or {}
+    mount, quality = found.get("mount", {}), found.get("quality", {})
+    world = (*found.get("position_m", (None,) * 3), *found.get("rotation", (None,) * 4))
+    drift = found.get("drift_m_s", (None,) * 3)
+    return {
+        "session_id": row.session_id,
+        "changed_at_utc": row.at,
+        "change": row.change,
+        "client_t_s": row.client_t_s,
+        "door": row.door,
+        "source": row.source,
+        "tracker": row.tracker,
+        "delay_s": mount.get("delay_s"),
+        "delay_uncertainty_s": mount.get("delay_uncertainty_s"),
+        "residual_m": quality.get("residual_m"),
+        "residual_p95_m": quality.get("residual_p95_m"),
+        "residual_rad": quality.get("residual_rad"),
+        "foot_uncertainty_m": quality.get("uncertainty_m"),
+        "outliers": quality.get("outliers"),
+        **dict(zip(_WORLD, world, strict=True)),
+        **{f"drift_{axis}_m_s": one for axis, one in zip("xyz", drift, strict=True)},
+        "reference_client_t_s": found.get("reference_s"),
+        "jump_side": jump.get("side"),
+        "jump_m": jump.get("offset_m"),
+        "jump_rad": jump.get("offset_rad"),
+    }
+
+
+def has_tracker_samples(db: Session, session_id: str) -> bool:
+    """Return whether anything that trackers sent is stored of a session."""
+    query = select(TrackerChunk.number).where(TrackerChunk.session_id == session_id).limit(1)
+    return db.scalar(query) is not None
+
+
+def tracker_samples(db: Session, session_id: str) -> Iterator[pd.DataFrame]:
+    """Yield what trackers and the headset's head sent for a session, in pieces of about a second.
+
+    The columns are those of the codebook's table `trackers`.
+    """
+    query = (
+        select(TrackerChunk)
+        .where(TrackerChunk.session_id == session_id)
+        .order_by(TrackerChunk.number)
+        .execution_options(yield_per=16)
+    )
+    for row in db.scalars(query):
+        found = decode_samples(row.trackers, row.sample_count, row.data)
+        late_ns = np.round((found.arrival_s - row.first_s) * _NS_PER_S).astype("int64")
+        yield pd.DataFrame(
+            {
+                "door": row.door,
+                "source": row.source,
+                "tracker": np.array(found.trackers, dtype=object)[found.tracker],
+                "tracked": found.tracked,
+                "source_s": found.source_s,
+                "arrival_s": found.arrival_s,
+                "arrived_at_utc": pd.Timestamp(row.first_at) + pd.to_timedelta(late_ns, unit="ns"),
+                "mapped_s": found.mapped_s,
+                "mapped_uncertainty_s": found.uncertainty_s,
+                **{f"{axis}_m": found.positions_m[:, n] for n, axis in enumerate("xyz")},
+                **{f"q{axis}": found.rotations[:, n] for n, axis in enumerate("wxyz")},
+            }
+        )
