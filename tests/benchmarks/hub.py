@@ -28,7 +28,7 @@ from app.models import TrackerChunk
 from app.science.rotations import identity
 from tests.benchmarks.report import CannotMeasure, Figure, Report
 from tests.features.lab import ok
-from tests.features.record.headset.site import SUBPROTOCOL, Site, open_site
+from tests.features.record.headset.site import HELLO, SUBPROTOCOL, Site, open_site
 from tests.features.record.headset.streaming import materialised
 from tests.science.alignment.rooms import (
     FOOT_FROM_HEAD_M,
@@ -46,6 +46,7 @@ RATE_HZ = 90.0
 LIMBS = ("Hips", "LeftHand", "RightHand", "LeftLowerLeg", "RightLowerLeg")
 DURATION_S = 30.0
 ALIGNS_WITHIN_S = 30.0
+WELCOMED_WITHIN_S = 180.0
 LIMIT_MS = 15.0
 _APART_M, _STEP_M = 0.5, 1e-4
 
@@ -117,8 +118,7 @@ def _to_headset(folder: Path, duration_s: float) -> list[Figure]:
     ):
         session_id, token = _session(site, port)
         path = f"/api/sessions/{session_id}/trackers"
-        site.command(session_id, "materialise")  # from here on movement is recorded
-        with _Wearer(server, token, lab) as wearer:
+        with _in_the_body(site, token), _Wearer(server, token, lab) as wearer:
             _send_for(lab, wearer, (port, relay_port), duration_s)
             time.sleep(2.5)
             shown: dict[str, Any] = ok(site.operator.get(path))
@@ -159,6 +159,18 @@ def _session(site: Site, port: int) -> tuple[str, str]:
     path = f"/api/sessions/{session_id}/trackers"
     ok(site.operator.put(path, json={"door": "json", "source": "bench"}))
     return session_id, site.token(session_id)
+
+
+@contextmanager
+def _in_the_body(site: Site, token: str) -> Iterator[None]:
+    """Keep the headset's own socket open, with the body entered: movement is then recorded."""
+    with site.socket(token) as socket:
+        body = {"kind": "materialised", "t_s": 1.0}
+        socket.send(json.dumps({**HELLO, "avatars": ["physics"], "changes_avatar": True}))
+        # The server loads compiled code for the first welcome, which takes long on a busy machine.
+        epoch = json.loads(socket.recv(timeout=WELCOMED_WITHIN_S))["epoch"]
+        socket.send(json.dumps({"type": "report", "epoch": epoch, "seq": 0, "body": body}))
+        yield
 
 
 class _Wearer:
