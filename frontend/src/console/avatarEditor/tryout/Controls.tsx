@@ -10,7 +10,8 @@ import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { partOf, SECTIONS, sectionOf } from "../axes";
 import { NamedSelect, NumberField } from "./fields";
-import { DIRECTIONS, type Direction } from "./pulling";
+import { DIRECTIONS, type Direction, OPPOSITES } from "./pulling";
+import type { TryoutRun } from "./run";
 import {
   AXIS_NAMES,
   type DriveSettings,
@@ -21,6 +22,7 @@ import {
   withKind,
 } from "./settings";
 import classes from "./Tryout.module.css";
+import { useFigures } from "./useFigures";
 
 const KINDS = ["hold", "step", "sine"] as const;
 
@@ -175,11 +177,16 @@ interface DisturbanceProps {
   readonly onPush: (push: PushSettings) => void;
   readonly go: () => void;
   readonly drop: () => void;
+  readonly run: TryoutRun | null;
 }
 
-export function Disturbance({ push, onPush, go, drop }: DisturbanceProps): JSX.Element {
+export function Disturbance({ push, onPush, go, drop, run }: DisturbanceProps): JSX.Element {
   const texts = useTexts();
   const { t } = texts;
+  const stops = useFigures(run, ({ progress }) => progress[0]?.stops ?? null, null);
+  const by = stops?.part === push.part ? stops.by : null;
+  const stop = by?.[push.direction] ?? null;
+  const other = OPPOSITES[push.direction];
   return (
     <fieldset className={classes.group}>
       <legend>{t("tryout.push")}</legend>
@@ -200,6 +207,22 @@ export function Disturbance({ push, onPush, go, drop }: DisturbanceProps): JSX.E
         allowDeselect={false}
         onChange={(value) => value !== null && onPush({ ...push, direction: value as Direction })}
       />
+      <div role="status" className={classes.stop}>
+        {stop !== null && (
+          <>
+            <p>{t(`tryout.push.stop.${stop.end}`, { axis: axisName(texts, stop.axis) })}</p>
+            {by?.[other] === null && (
+              <Button
+                size="compact-xs"
+                variant="default"
+                onClick={() => onPush({ ...push, direction: other })}
+              >
+                {t("tryout.push.turn", { direction: t(`tryout.push.${other}`) })}
+              </Button>
+            )}
+          </>
+        )}
+      </div>
       <div className={classes.pair}>
         <NumberField
           label={t("tryout.push.force")}

@@ -171,7 +171,8 @@ const stepRows = ({ deg, percent, seconds }: Words, t: T): readonly Row[] => {
   const reached = (value: number | null, { watchedS }: WatchedStep) =>
     value === null ? t("tryout.notWithin", { time: seconds(watchedS) }) : seconds(value);
   return [
-    ["jump", of(({ stepDeg }) => deg(stepDeg))],
+    ["jump", of(({ orderedDeg }) => deg(orderedDeg))],
+    ["way", of(({ stepDeg }) => deg(stepDeg))],
     // Without a rise there is nothing that could be overshot.
     [
       "overshoot",

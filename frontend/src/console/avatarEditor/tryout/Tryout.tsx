@@ -60,10 +60,9 @@ export function Tryout({ title, configuration, axis: given, onAxis }: TryoutProp
     onAxis?.(next);
   };
   const follow = useFollow(live.scene);
-  const page = useRef<HTMLDivElement>(null);
-  useKeys(page, { run, scene: live.scene, commands, onFollow: follow.toggle });
+  useKeys({ run, scene: live.scene, commands, onFollow: follow.toggle });
   return (
-    <div ref={page} className={classes.tryout}>
+    <div className={classes.tryout}>
       <p className={classes.lead}>{t("tryout.lead")}</p>
       <Problems live={live} error={bodies.error} />
       <div className={classes.columns}>
@@ -104,7 +103,7 @@ export function Tryout({ title, configuration, axis: given, onAxis }: TryoutProp
             limits={limitsOf(configuration, axis)}
             {...commands.movement}
           />
-          <Disturbance {...commands.disturbance} />
+          <Disturbance {...commands.disturbance} run={run} />
           <Conditions
             {...commands.conditions}
             statureCm={statureCm}

@@ -1,5 +1,5 @@
 /** Keys of the try-out, and when they are its own. */
-import { type RefObject, useEffect, useRef } from "react";
+import { useEffect, useRef } from "react";
 import type { TryoutRun } from "./run";
 import type { TryoutScene } from "./scene";
 import type { Commands } from "./useCommands";
@@ -22,13 +22,10 @@ export const KEYS: Readonly<Record<string, (to: Keyed) => void>> = {
 };
 
 /**
- * Listen while the try-out is on the page. A key is its own when the focus is in it, or nowhere: then
- * the space bar plays and pauses instead of scrolling the page.
+ * Listen while the try-out is on the page: wherever the focus is, except where a key has a meaning
+ * already, and not behind a dialog. The space bar plays and pauses instead of scrolling the page.
  */
-export function useKeys(
-  root: RefObject<HTMLElement | null>,
-  to: { readonly [Key in keyof Keyed]: Keyed[Key] | null },
-): void {
+export function useKeys(to: { readonly [Key in keyof Keyed]: Keyed[Key] | null }): void {
   const latest = useRef(to);
   latest.current = to;
   useEffect(() => {
@@ -36,21 +33,31 @@ export function useKeys(
       const { run, scene, commands, onFollow } = latest.current;
       const act = KEYS[event.key.toLowerCase()];
       if (act === undefined || run === null || commands === null || onFollow === null) return;
-      if (event.defaultPrevented || !isOwn(event, root.current)) return;
+      if (event.defaultPrevented || !isOwn(event)) return;
       event.preventDefault();
       act({ run, scene, commands, onFollow });
     };
     document.addEventListener("keydown", onKey);
     return () => document.removeEventListener("keydown", onKey);
-  }, [root]);
+  }, []);
 }
 
 /** Elements in which a key already has a meaning. */
-const TYPED = "input:not([type='radio'], [type='checkbox']), textarea, [role='combobox']";
+const TYPED =
+  "input:not([type='radio'], [type='checkbox']), textarea, select, [contenteditable='true'], [role='combobox'], [role='option'], [role='menu']";
+/** What the space bar presses; the tab that is shown already has nothing to be pressed for. */
+const PRESSED = "button, input, a[href], summary";
+const SHOWN_TAB = "[role='tab'][aria-selected='true']";
+const DIALOG = "[role='dialog'][aria-modal='true']";
 
-function isOwn(event: KeyboardEvent, root: HTMLElement | null): boolean {
-  const { target } = event;
-  if (event.ctrlKey || event.metaKey || event.altKey || !(target instanceof Element)) return false;
-  if (target !== document.body && root?.contains(target) !== true) return false;
-  return target.closest(event.key === " " ? `button, input, ${TYPED}` : TYPED) === null;
+export function isOwn({
+  key,
+  target,
+  ctrlKey,
+  metaKey,
+  altKey,
+}: Pick<KeyboardEvent, "key" | "target" | "ctrlKey" | "metaKey" | "altKey">): boolean {
+  if (ctrlKey || metaKey || altKey || !(target instanceof Element)) return false;
+  if (document.querySelector(DIALOG) !== null || target.closest(TYPED) !== null) return false;
+  return key !== " " || target.matches(SHOWN_TAB) || target.closest(PRESSED) === null;
 }

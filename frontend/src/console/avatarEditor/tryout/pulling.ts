@@ -14,6 +14,15 @@ export const DIRECTIONS = {
   down: [0, -1, 0],
 } as const satisfies Readonly<Record<string, Vector>>;
 export type Direction = keyof typeof DIRECTIONS;
+/** The other way of each direction. */
+export const OPPOSITES = {
+  forward: "backward",
+  backward: "forward",
+  left: "right",
+  right: "left",
+  up: "down",
+  down: "up",
+} as const satisfies Readonly<Record<Direction, Direction>>;
 
 /** Return the force from where it acts towards the pointer, N; weaker than `STRONGEST_N`. */
 export function pullOf(from: Vector, to: Vector): Vector {

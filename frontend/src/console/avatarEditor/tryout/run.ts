@@ -61,6 +61,8 @@ export class TryoutRun {
   private readonly joining = new Set<number>();
   /** The axis whose curves are kept. */
   private drawn: string | null = null;
+  /** The part that is chosen for a push. */
+  private part: string | null = null;
   private isWaiting = false;
   private due = 0;
   private lastMs: number | null = null;
@@ -101,6 +103,11 @@ export class TryoutRun {
     this.axis = axis;
   }
 
+  /** Ask from now on what a push at a part would meet. */
+  aim(part: string): void {
+    this.part = part;
+  }
+
   play(isPlaying: boolean): void {
     this.rest();
     this.set({ isPlaying });
@@ -132,7 +139,12 @@ export class TryoutRun {
     this.due = Math.max(this.due - ticks * TICK_S, 0);
     this.isWaiting = true;
     this.underWay = ticks;
-    this.port.postMessage({ kind: "advance", ticks, axis: this.axis });
+    this.port.postMessage({
+      kind: "advance",
+      ticks,
+      axis: this.axis,
+      ...(this.part === null ? {} : { part: this.part }),
+    });
   }
 
   subscribe = (listener: () => void): (() => void) => {

@@ -46,6 +46,10 @@ const NEWTONS_A_METRE = 250;
 const TIP_M = 0.09;
 /** The camera goes along with what moves further than this from the middle of the picture. */
 const NEAR_M = 0.02;
+/** The height of a body's name, metres. */
+const LABEL_M = 2.15;
+/** How much of its colours the second body keeps, so that the two are told apart. */
+const OWN_COLOUR = 0.45;
 const UP = new Vector3(0, 1, 0);
 const SEE_THROUGH = 0.35;
 const NO_FORCE: Vector = [0, 0, 0];
@@ -116,13 +120,17 @@ export class TryoutScene extends Space3d {
 
   /** Move the bodies to where they are now. */
   show(progress: readonly Progress[]): void {
-    this.#standing.forEach(({ parts, arrow }, row) => {
+    this.#standing.forEach(({ parts, arrow, label, hips }, row) => {
       const now = progress[row];
       if (now === undefined) return;
       for (const { body, group } of parts) {
         group.position.fromArray(now.places, 7 * body);
         const [w, x, y, z] = now.places.subarray(7 * body + 3, 7 * body + 7);
         group.quaternion.set(x as number, y as number, z as number, w as number);
+      }
+      const [x, z] = [now.places[7 * hips], now.places[7 * hips + 2]];
+      if (Number.isFinite(x) && Number.isFinite(z)) {
+        label?.position.set(x as number, LABEL_M, z as number);
       }
       this.#point(arrow, now.pushedAtM);
     });
@@ -324,7 +332,7 @@ function stand(
   group.add(arrow.group);
   const label = count > 1 ? label3d(name, palette) : null;
   if (label !== null) {
-    label.position.set(0, 2.15, 0);
+    label.position.set(0, LABEL_M, 0);
     group.add(label);
   }
   const hips = shapes.find(({ part }) => part === "Hips")?.body ?? 0;
@@ -355,7 +363,7 @@ const isShape = (one: Object3D): one is ShapeMesh =>
   one instanceof Mesh && typeof one.userData.part === "string";
 
 function meshOf(shape: Shape, row: number, palette: StagePalette): ShapeMesh {
-  const material = new MeshLambertMaterial({ color: colourOf(shape.part, palette) });
+  const material = new MeshLambertMaterial({ color: colourOf(shape.part, row, palette) });
   if (!shape.collides) {
     material.transparent = true;
     material.opacity = SEE_THROUGH;
@@ -372,10 +380,17 @@ function meshOf(shape: Shape, row: number, palette: StagePalette): ShapeMesh {
 
 const Z_FROM_Y = new Quaternion().setFromAxisAngle(new Vector3(1, 0, 0), Math.PI / 2);
 
-function colourOf(part: string, palette: StagePalette): string {
-  if (part === BOX) return palette.highlight;
-  if (part.startsWith("Left")) return palette.left;
-  return part.startsWith("Right") ? palette.right : palette.trunk;
+/** The colours of the sides; those of the second body fade towards the ground. */
+function colourOf(part: string, row: number, palette: StagePalette): Color {
+  if (part === BOX) return new Color(palette.highlight);
+  const own = new Color(
+    part.startsWith("Left")
+      ? palette.left
+      : part.startsWith("Right")
+        ? palette.right
+        : palette.trunk,
+  );
+  return row === 0 ? own : own.lerp(new Color(palette.ground), 1 - OWN_COLOUR);
 }
 
 function geometryOf({ kind, sizeM, cornersM }: Shape): BufferGeometry {

@@ -46,7 +46,7 @@ describe("what is chosen becomes a command", () => {
   it("pushes a part at its centre of mass, poses the others, and drops a box from above", () => {
     expect(pushCommand(FIRST_PUSH)).toEqual({
       kind: "push",
-      push: { part: "LeftLowerLeg", pointM: null, forceN: [0, 0, -100], forS: 0.2 },
+      push: { part: "LeftLowerLeg", pointM: null, forceN: [0, 0, 100], forS: 0.2 },
     });
     expect(poseCommand("leg")).toEqual({
       kind: "pose",

@@ -24,7 +24,8 @@ export interface PushSettings {
 
 export const FIRST_PUSH: PushSettings = {
   part: "LeftLowerLeg",
-  direction: "forward",
+  // At zero degrees the knee is at its lower limit: backwards it can bend.
+  direction: "backward",
   forceN: 100,
   forS: 0.2,
 };

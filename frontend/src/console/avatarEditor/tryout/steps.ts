@@ -11,7 +11,7 @@ const SETTLED_SHARE = 0.02;
 const REST_S = 0.05;
 
 export interface StepFigures {
-  /** The angle by which the target jumped. */
+  /** From the angle at which the axis was when the target jumped, to the target. */
   readonly stepDeg: number;
   /** The farthest excursion beyond the final angle, % of the distance travelled. */
   readonly overshootPercent: number;
@@ -59,6 +59,8 @@ export function stepFigures(
 
 /** The figures of a step on the page, and for how long it has been watched. */
 export interface WatchedStep extends StepFigures {
+  /** The angle by which the target jumped from the target before it. */
+  readonly orderedDeg: number;
   readonly watchedS: number;
 }
 
@@ -77,6 +79,7 @@ export class StepWatch {
   private count = 0;
   private startRad: number | null = null;
   private targetRad = Number.NaN;
+  private orderedDeg = 0;
   private lastAngleRad: number | null = null;
   private before: WatchedStep | null = null;
 
@@ -86,6 +89,7 @@ export class StepWatch {
       this.before = this.figuresFrom(SHORTEST) ?? this.before;
       const isStep = Math.abs(targetRad - this.targetRad) >= SMALLEST_RAD;
       this.startRad = isStep ? this.lastAngleRad : null;
+      this.orderedDeg = DEGREES * (targetRad - this.targetRad);
       this.targetRad = targetRad;
       this.count = 0;
     }
@@ -116,6 +120,10 @@ export class StepWatch {
     const { startRad, count, targetRad } = this;
     if (startRad === null || count < least) return null;
     const angles = this.angles.subarray(0, count);
-    return { ...stepFigures(angles, startRad, targetRad, TICK_S), watchedS: count * TICK_S };
+    return {
+      ...stepFigures(angles, startRad, targetRad, TICK_S),
+      orderedDeg: this.orderedDeg,
+      watchedS: count * TICK_S,
+    };
   }
 }

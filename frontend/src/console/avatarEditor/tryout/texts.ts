@@ -61,6 +61,11 @@ export const tryoutEn = {
   "tryout.push.right": "To its right",
   "tryout.push.up": "Up",
   "tryout.push.down": "Down",
+  "tryout.push.stop.low":
+    "{{axis}} is at its lower limit: a push this way meets the stop. Push the other way to see it give way.",
+  "tryout.push.stop.high":
+    "{{axis}} is at its upper limit: a push this way meets the stop. Push the other way to see it give way.",
+  "tryout.push.turn": "Choose: {{direction}}",
   "tryout.push.force": "Force",
   "tryout.push.for": "For",
   "tryout.push.go": "Push",
@@ -106,6 +111,7 @@ export const tryoutEn = {
   "tryout.notWithin": "not within {{time}}",
   "tryout.figure": "Last 5 seconds",
   "tryout.figure.jump": "Step of the target",
+  "tryout.figure.way": "From the angle then to the new target",
   "tryout.figure.overshoot": "Overshoot",
   "tryout.figure.rise": "Rise time, 10 to 90\u00a0%",
   "tryout.figure.settling": "Settling time, 2\u00a0%",
@@ -194,6 +200,11 @@ export const tryoutDe: Readonly<Record<keyof typeof tryoutEn, string>> = {
   "tryout.push.right": "Nach seiner Rechten",
   "tryout.push.up": "Nach oben",
   "tryout.push.down": "Nach unten",
+  "tryout.push.stop.low":
+    "{{axis}} ist an der unteren Grenze: Ein Stoß in diese Richtung trifft den Anschlag. Stoßen Sie andersherum, um das Nachgeben zu sehen.",
+  "tryout.push.stop.high":
+    "{{axis}} ist an der oberen Grenze: Ein Stoß in diese Richtung trifft den Anschlag. Stoßen Sie andersherum, um das Nachgeben zu sehen.",
+  "tryout.push.turn": "Wählen: {{direction}}",
   "tryout.push.force": "Kraft",
   "tryout.push.for": "Dauer",
   "tryout.push.go": "Stoßen",
@@ -239,6 +250,7 @@ export const tryoutDe: Readonly<Record<keyof typeof tryoutEn, string>> = {
   "tryout.notWithin": "nicht in {{time}}",
   "tryout.figure": "Letzte 5 Sekunden",
   "tryout.figure.jump": "Sprung des Ziels",
+  "tryout.figure.way": "Vom Winkel dabei zum neuen Ziel",
   "tryout.figure.overshoot": "Überschwingen",
   "tryout.figure.rise": "Anstiegszeit, 10 bis 90\u00a0%",
   "tryout.figure.settling": "Ausregelzeit, 2\u00a0%",

@@ -60,6 +60,7 @@ export function useCommands(
   useEffect(() => run?.send(poseCommand(pose)), [run, pose]);
   useEffect(() => run?.send({ kind: "latency", latencyS: latencyMs / 1000 }), [run, latencyMs]);
   useEffect(() => run?.send({ kind: "gravity", isOn: hasGravity }), [run, hasGravity]);
+  useEffect(() => run?.aim(push.part), [run, push.part]);
   const go = () => {
     if (run === null) return;
     setPushed(scaled(DIRECTIONS[push.direction], push.forceN));

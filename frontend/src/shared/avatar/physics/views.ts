@@ -18,6 +18,9 @@ export class Views {
   xpos!: Float64Array;
   xquat!: Float64Array;
   xipos!: Float64Array;
+  /** Where each joint's axis goes through, and its direction, in the world. */
+  xanchor!: Float64Array;
+  xaxis!: Float64Array;
   xfrcApplied!: Float64Array;
   actuatorForce!: Float64Array;
   geomXpos!: Float64Array;
@@ -64,6 +67,8 @@ export class Views {
     this.xpos = data.xpos;
     this.xquat = data.xquat;
     this.xipos = data.xipos;
+    this.xanchor = data.xanchor;
+    this.xaxis = data.xaxis;
     this.xfrcApplied = data.xfrc_applied;
     this.actuatorForce = data.actuator_force;
     this.geomXpos = data.geom_xpos;

@@ -3,6 +3,8 @@ import { resolve } from "node:path";
 import { loadMujoco, type Mujoco } from "@shared/avatar/mujoco";
 import type { ConfigurationFile } from "@shared/avatar/physics/settings";
 import { beforeAll, describe, expect, it } from "vitest";
+import type { Direction } from "../pulling";
+import { FIRST_PUSH, pushCommand } from "../settings";
 import type { Command } from "./commands";
 import { Tryout } from "./tryout";
 
@@ -59,6 +61,28 @@ describe("a body beside another", () => {
     const problems = tried.change([own, weak], [{ kind: "latency", latencyS: 9 }]);
     expect(problems.map(String)).toEqual([expect.stringContaining("9")]);
     expect(tried.bodies).toHaveLength(2);
+    tried.dispose();
+  });
+});
+
+describe("a push against a stop", () => {
+  const PART = "LeftLowerLeg";
+  const push = (direction: Direction): Command =>
+    pushCommand({ ...FIRST_PUSH, part: PART, direction });
+
+  it("is foretold by the limit of the joint that it would turn, and its opposite gives way", () => {
+    const tried = new Tryout(mujoco, [own]);
+    const stops = tried.advance(20, AXIS, PART)[0]?.stops;
+    expect(stops?.by.forward).toEqual({ axis: "LeftLowerLegX", end: "low" });
+    expect(stops?.by.backward).toBeNull();
+    expect(stops?.by[FIRST_PUSH.direction]).toBeNull();
+    const peaks = (["forward", "backward"] as const).map((direction) => {
+      tried.obey({ kind: "reset" });
+      tried.obey(push(direction));
+      return tried.advance(60, AXIS, PART)[0]?.push?.peakRad ?? 0;
+    });
+    expect(peaks[1]).toBeGreaterThan(1.5 * (peaks[0] as number));
+    expect(tried.advance(1, AXIS)[0]?.stops).toBeNull();
     tried.dispose();
   });
 });

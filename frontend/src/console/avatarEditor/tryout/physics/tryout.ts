@@ -3,6 +3,7 @@ import type { Mujoco } from "@shared/avatar/mujoco";
 import type { Command } from "./commands";
 import { Deflection, type PushFigures } from "./deflection";
 import { type Shape, shapesOf } from "./shapes";
+import { type Stops, stopsOf } from "./stops";
 import { type BodyToTry, COLUMNS, type Following, TICK_S, TriedBody } from "./triedBody";
 
 /** Numbers of a reading of an axis: target, angle (radians), torque (N m). */
@@ -20,6 +21,8 @@ export interface Progress extends Following {
   readonly pushedAtM: readonly [number, number, number] | null;
   /** What the last push has done since; null without one since the last reset. */
   readonly push: PushFigures | null;
+  /** What stands in the way of a push at the part that was asked for; null if none was. */
+  readonly stops: Stops | null;
   /** Frames after which the simulation had failed and was restored, since it was opened. */
   readonly restored: number;
   /** Times at which MuJoCo had started anew by itself. */
@@ -98,8 +101,8 @@ export class Tryout {
     return problems;
   }
 
-  /** Simulate a number of ticks of 10 ms; watch an axis. */
-  advance(ticks: number, axis: string): readonly Progress[] {
+  /** Simulate a number of ticks of 10 ms; watch an axis, and what a push at a part would meet. */
+  advance(ticks: number, axis: string, part?: string): readonly Progress[] {
     const column = COLUMNS.get(axis) ?? -1;
     return this.tried.map((one) => {
       const { body } = one;
@@ -120,6 +123,7 @@ export class Tryout {
         limitNm: limitOf(body, column),
         pushedAtM: body.pushedAt(),
         push: one.deflection?.figures ?? null,
+        stops: part === undefined ? null : stopsOf(body, part),
         restored,
         resets,
         isFinite: body.isFinite,

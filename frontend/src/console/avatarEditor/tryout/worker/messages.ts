@@ -9,7 +9,13 @@ export type ToWorker =
   /** Other bodies; those that are the same go on. */
   | { readonly kind: "change"; readonly bodies: readonly BodyToTry[] }
   | { readonly kind: "command"; readonly command: Command }
-  | { readonly kind: "advance"; readonly ticks: number; readonly axis: string };
+  | {
+      readonly kind: "advance";
+      readonly ticks: number;
+      readonly axis: string;
+      /** The part that is chosen for a push. */
+      readonly part?: string;
+    };
 
 export type FromWorker =
   | {

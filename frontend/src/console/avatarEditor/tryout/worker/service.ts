@@ -40,7 +40,7 @@ class Service {
     if (message.kind === "open") this.open(message.bodies);
     else if (message.kind === "change") this.change(message.bodies);
     else if (message.kind === "command") this.obey(message.command);
-    else this.advance(message.ticks, message.axis);
+    else this.advance(message.ticks, message.axis, message.part);
   }
 
   private open(bodies: readonly BodyToTry[]): void {
@@ -89,11 +89,11 @@ class Service {
     this.port.postMessage({ kind: "refused", problem: problem.message });
   }
 
-  private advance(ticks: number, axis: string): void {
+  private advance(ticks: number, axis: string, part: string | undefined): void {
     const { tryout } = this;
     if (tryout === null) return;
     const begin = performance.now();
-    const bodies = tryout.advance(ticks, axis);
+    const bodies = tryout.advance(ticks, axis, part);
     const tookMs = performance.now() - begin;
     this.port.postMessage(
       { kind: "advanced", advance: { ticks, axis, timeS: tryout.timeS, tookMs, bodies } },
