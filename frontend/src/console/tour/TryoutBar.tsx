@@ -4,7 +4,8 @@
  *
  * The page goes to its session as soon as there is one, and the tour starts if it was never seen.
  */
-import { Button, Loader } from "@mantine/core";
+import { Button, Loader, Tooltip } from "@mantine/core";
+import { useLocalStorage } from "@mantine/hooks";
 import type { Tryout } from "@shared/api/housekeeping";
 import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
@@ -67,10 +68,58 @@ function Bar({ tryout, watching, onWatch, onClose }: BarProps): JSX.Element {
   const { t } = useTexts();
   const stop = useStopTryout();
   const touring = useTourStep() !== null;
+  const [isFolded, setFolded] = useLocalStorage({
+    key: "reembody.tryout.folded",
+    defaultValue: false,
+    getInitialValueInEffect: false,
+  });
+  const toggle = useRef<HTMLButtonElement>(null);
+  const fold = (is: boolean) => {
+    setFolded(is);
+    // The button stands elsewhere then; the focus goes along.
+    requestAnimationFrame(() => toggle.current?.focus());
+  };
+  // What has failed is always told in full.
+  if (isFolded && tryout.state !== "failed") {
+    return (
+      <section
+        className={`${classes.bar} ${classes.folded}`}
+        data-state={tryout.state}
+        aria-label={t("try.label")}
+      >
+        <Tooltip label={t("try.unfold")} position="left">
+          <button
+            ref={toggle}
+            type="button"
+            className={classes.unfold}
+            aria-label={t("try.unfold")}
+            aria-expanded={false}
+            onClick={() => fold(false)}
+          >
+            {tryout.state === "starting" ? <Loader size="xs" /> : <Icon name="body" size={18} />}
+          </button>
+        </Tooltip>
+      </section>
+    );
+  }
   return (
     <section className={classes.bar} data-state={tryout.state} aria-label={t("try.label")}>
       {tryout.state === "starting" ? <Loader size="xs" /> : <Icon name="body" size={18} />}
       <StatusText tryout={tryout} />
+      {tryout.state !== "failed" && (
+        <Tooltip label={t("try.fold")} position="left">
+          <button
+            ref={toggle}
+            type="button"
+            className={classes.fold}
+            aria-label={t("try.fold")}
+            aria-expanded
+            onClick={() => fold(true)}
+          >
+            <Icon name="minus" size={16} />
+          </button>
+        </Tooltip>
+      )}
       <div className={classes.buttons}>
         {watching && isOn(tryout) && !touring && (
           <Button size="compact-sm" variant="subtle" onClick={startTour}>
