@@ -31,15 +31,21 @@ interface EditorProps {
   readonly title: string;
   /** The stored text, with which the editing starts. */
   readonly stored: string;
+  /** The text at the beginning; another editor is made for another one. */
   readonly initial: string;
   readonly notice?: ReactNode;
+  /** Called with the text that is about to be stored. */
+  readonly onSave?: (text: string) => void;
 }
 
 const TABS = ["write", "dryRun", "changes"] as const;
 type Tab = (typeof TABS)[number];
 
-export function Editor({ studyKey, title, stored, initial, notice }: EditorProps): JSX.Element {
+export function Editor(props: EditorProps): JSX.Element {
+  const { studyKey, title, stored, notice, onSave } = props;
   const { t } = useTexts();
+  // The field owns the text: after a save it goes on where it is.
+  const [initial] = useState(props.initial);
   const draft = useDraft(initial);
   const [tab, setTab] = useState<Tab>("write");
   const id = studyKey ?? "new";
@@ -52,7 +58,7 @@ export function Editor({ studyKey, title, stored, initial, notice }: EditorProps
   return (
     <div className={classes.editor}>
       <LeaveGuard unsaved={unsaved} />
-      <Bar draft={draft} studyKey={studyKey} title={title} unsaved={unsaved} />
+      <Bar draft={draft} studyKey={studyKey} title={title} unsaved={unsaved} onSave={onSave} />
       {notice}
       <Tabs
         value={tab}
@@ -86,15 +92,18 @@ interface BarProps {
   readonly studyKey: string | null;
   readonly title: string;
   readonly unsaved: boolean;
+  readonly onSave: ((text: string) => void) | undefined;
 }
 
-function Bar({ draft, studyKey, title, unsaved }: BarProps): JSX.Element {
+function Bar({ draft, studyKey, title, unsaved, onSave }: BarProps): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
   const queries = useQueryClient();
   const save = useMutation({
-    mutationFn: () =>
-      studyKey === null ? studies.add(draft.text) : studies.addVersion(studyKey, draft.text),
+    mutationFn: () => {
+      onSave?.(draft.text);
+      return studyKey === null ? studies.add(draft.text) : studies.addVersion(studyKey, draft.text);
+    },
     onSuccess: async (study) => {
       dropDraft(studyKey ?? "new");
       await queries.invalidateQueries({ queryKey: ["studies"] });

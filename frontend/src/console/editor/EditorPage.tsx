@@ -5,11 +5,12 @@
 import { Button } from "@mantine/core";
 import { drafts } from "@shared/api/drafts";
 import { studies } from "@shared/api/endpoints";
+import type { StudyDetail } from "@shared/api/types";
 import { dateTime } from "@shared/format";
 import { inLanguage } from "@shared/text";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import { type JSX, useRef, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { templatesQuery } from "../queries";
@@ -28,11 +29,21 @@ export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.
     gcTime: 0,
     staleTime: Number.POSITIVE_INFINITY,
   });
+  const mounted = useRef<string | null>(null);
+  const saved = useRef<string | null>(null);
+  /** What was saved here is in the editor already, which stays with its page and its cursor. */
+  const keyOf = ({ content_hash, yaml }: StudyDetail): string => {
+    if (mounted.current === null || yaml !== saved.current) mounted.current = content_hash;
+    return mounted.current;
+  };
   return (
     <Loaded query={query}>
       {(study) => (
         <EditorWithDraft
-          key={study.content_hash}
+          key={keyOf(study)}
+          onSave={(text) => {
+            saved.current = text;
+          }}
           id={study.key}
           studyKey={study.key}
           title={study.protocol === null ? study.title : inLanguage(study.protocol.title, language)}
@@ -99,6 +110,8 @@ interface EditorWithDraftProps {
   readonly title: string;
   readonly stored: string;
   readonly begin: string;
+  /** Called with the text that is about to be stored. */
+  readonly onSave?: (text: string) => void;
   /** Whether the starting point was just chosen, so that it replaces a kept draft. */
   readonly fresh?: boolean;
 }
@@ -113,6 +126,7 @@ function EditorWithDraft({
   stored,
   begin,
   fresh = false,
+  onSave,
 }: EditorWithDraftProps): JSX.Element {
   const { t, language } = useTexts();
   const [kept] = useState(() => (fresh ? null : storedDraft(id)));
@@ -122,6 +136,7 @@ function EditorWithDraft({
   return (
     <Editor
       key={restored ? "kept" : "stored"}
+      {...(onSave === undefined ? {} : { onSave })}
       studyKey={studyKey}
       title={title}
       stored={stored}

@@ -8,7 +8,7 @@ import { useDebouncedValue } from "@mantine/hooks";
 import { drafts } from "@shared/api/drafts";
 import type { CheckResult } from "@shared/api/types";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
-import { type RefObject, useEffect, useRef, useState } from "react";
+import { type RefObject, useRef, useState } from "react";
 import { type Change, type Path, pathText } from "./paths";
 import { replaceText, showLine, type YamlText } from "./YamlField";
 
@@ -39,7 +39,6 @@ export function useDraft(initial: string): Draft {
   const [failure, setFailure] = useState<unknown>(null);
   const field = useRef<YamlText | null>(null);
   const queue = useRef(Promise.resolve());
-  useEffect(() => setText(initial), [initial]);
   const checked = byForm ? text : settled;
   const query = useQuery({
     queryKey: ["check", checked],

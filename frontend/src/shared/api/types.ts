@@ -118,6 +118,9 @@ export interface StudyProtocol {
     };
     readonly after: readonly SetupStep[];
   };
+  readonly avatar?: string;
+  /** The saved avatar that is worn; only for the physics avatar. */
+  readonly avatar_configuration?: { readonly key: string; readonly version: number } | null;
   readonly on_disconnect: string;
   readonly blinding: { readonly operator: boolean };
 }

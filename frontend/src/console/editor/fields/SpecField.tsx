@@ -1,7 +1,7 @@
 /** The field for any value in the file, chosen by its schema. */
 import { ActionIcon, Autocomplete, Button, Menu, TagsInput } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
-import { type FormEvent, type JSX, type KeyboardEvent, useState } from "react";
+import { type FormEvent, type JSX, type KeyboardEvent, useRef, useState } from "react";
 import { useTexts } from "../../i18n";
 import classes from "../Editor.module.css";
 import { useForm, useLabels, useProblem, useValue } from "../formContext";
@@ -79,13 +79,32 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
   const fields = spec.fields.filter(
     (field) => !without.includes(field.name) && field.spec.kind !== "fixed",
   );
-  const absent = fields.filter((field) => !field.required && !has(field));
+  // A word has no blank that would be valid: its field is opened, and nothing written before it has
+  // one.
+  const [opened, setOpened] = useState<ReadonlySet<string>>(NONE_OPENED);
+  const place = useRef<HTMLDivElement>(null);
+  const isOpen = (field: Field) => opened.has(field.name) && !has(field);
+  const close = (name: string) =>
+    setOpened((before) => new Set([...before].filter((one) => one !== name)));
+  const open = (name: string) => {
+    setOpened((before) => new Set([...before, name]));
+    requestAnimationFrame(() =>
+      place.current
+        ?.querySelector<HTMLElement>(`[data-opened="${name}"] :is(input, textarea)`)
+        ?.focus(),
+    );
+  };
+  const absent = fields.filter((field) => !field.required && !has(field) && !isOpen(field));
   return (
-    <div className={classes.fields}>
+    <div className={classes.fields} ref={place}>
       {fields
-        .filter((field) => field.required || has(field))
+        .filter((field) => field.required || has(field) || isOpen(field))
         .map((field) => (
-          <div key={field.name} className={isWide(field.spec) ? classes.wide : classes.narrow}>
+          <div
+            key={field.name}
+            className={isWide(field.spec) ? classes.wide : classes.narrow}
+            data-opened={isOpen(field) ? field.name : undefined}
+          >
             <SpecField
               path={[...path, field.name]}
               spec={field.spec}
@@ -95,7 +114,10 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
               <button
                 type="button"
                 className={classes.drop}
-                onClick={() => change([{ path: [...path, field.name], action: "remove" }])}
+                onClick={() => {
+                  close(field.name);
+                  if (has(field)) change([{ path: [...path, field.name], action: "remove" }]);
+                }}
               >
                 {t("editor.leaveOut", { name: labels.field(field.name) })}
               </button>
@@ -110,15 +132,11 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
               size="compact-xs"
               variant="subtle"
               leftSection={<Icon name="add" size={14} />}
-              onClick={() =>
-                change([
-                  {
-                    path: [...path, field.name],
-                    action: "set",
-                    value: blank(field.spec, languages),
-                  },
-                ])
-              }
+              onClick={() => {
+                if (field.spec.kind === "words") return open(field.name);
+                const value = blank(field.spec, languages);
+                change([{ path: [...path, field.name], action: "set", value }]);
+              }}
             >
               {labels.field(field.name)}
             </Button>
@@ -128,6 +146,8 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
     </div>
   );
 }
+
+const NONE_OPENED: ReadonlySet<string> = new Set();
 
 const isWide = (spec: Spec): boolean =>
   spec.kind === "texts" ||

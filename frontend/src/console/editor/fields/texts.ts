@@ -63,7 +63,7 @@ export const fieldsEn = {
   "section.basics.lead": "The name of the study, its languages, and where it comes from.",
   "section.conditions": "Conditions",
   "section.conditions.lead":
-    "The levels of the study's one factor: the latency added to every delayed body part.",
+    "The levels of the study's factor: the latency added to every delayed body part and, where conditions name one, the body that participants wear.",
   "section.orders": "Orders",
   "section.orders.lead":
     "How the orders of the conditions are balanced across participants. A change starts a new ledger.",
@@ -205,7 +205,7 @@ export const fieldsDe: Readonly<Record<keyof typeof fieldsEn, string>> = {
   "section.basics.lead": "Wie die Studie heißt, welche Sprachen sie hat und woher sie kommt.",
   "section.conditions": "Bedingungen",
   "section.conditions.lead":
-    "Die Stufen des einzigen Faktors: die Latenz, die bei jedem verzögerten Körperteil hinzukommt.",
+    "Die Stufen des Faktors: die Latenz, die bei jedem verzögerten Körperteil hinzukommt, und, wo Bedingungen einen nennen, der Körper, den Teilnehmende tragen.",
   "section.orders": "Reihenfolgen",
   "section.orders.lead":
     "Wie die Reihenfolgen der Bedingungen über die Personen ausbalanciert werden. Mit einer Änderung beginnt ein neuer Plan.",

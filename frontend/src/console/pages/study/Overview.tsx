@@ -1,15 +1,19 @@
 /**
  * What the study is: its question, its conditions, its orders, and the session minute by minute.
  */
-import { Paper, Title } from "@mantine/core";
+import { Anchor, Paper, Title } from "@mantine/core";
 import type { StudyDetail, StudyProtocol } from "@shared/api/types";
 import { latency } from "@shared/format";
 import { inLanguage } from "@shared/text";
 import { Notice } from "@shared/ui/Notice";
 import { milliseconds } from "@shared/units";
+import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
+import { Link } from "wouter";
+import { savedAvatarsQuery } from "../../avatarEditor/tryout/source";
 import { type Key, useTexts } from "../../i18n";
 import classes from "./Overview.module.css";
+import { orderCount } from "./orderCount";
 import { Procedure } from "./Procedure";
 
 export function Overview({ study }: { readonly study: StudyDetail }): JSX.Element {
@@ -131,6 +135,7 @@ function Design({ study, protocol }: FullOverviewProps): JSX.Element {
   ];
   return (
     <dl className={classes.facts}>
+      <Avatar protocol={protocol} />
       {facts.map(([name, value]) => (
         <div key={name} style={{ display: "contents" }}>
           <dt>{name}</dt>
@@ -141,17 +146,37 @@ function Design({ study, protocol }: FullOverviewProps): JSX.Element {
   );
 }
 
+/** The avatar that the study names, with its version and hash, and the way to it. */
+function Avatar({ protocol }: { readonly protocol: StudyProtocol }): JSX.Element | null {
+  const { t } = useTexts();
+  const named = protocol.avatar_configuration ?? null;
+  const { data } = useQuery({ ...savedAvatarsQuery, enabled: named !== null });
+  if (named === null) return null;
+  const found = data?.find(({ key }) => key === named.key);
+  const hash = found?.content_hashes[named.version - 1];
+  return (
+    <>
+      <dt>{t("design.avatar")}</dt>
+      <dd className="numbers">
+        <Anchor component={Link} href={`/avatars/${named.key}/${named.version}`} inherit>
+          {t("tryout.compare.version", {
+            title: found?.title ?? named.key,
+            number: named.version,
+          })}
+        </Anchor>
+        {hash !== undefined && (
+          <>
+            {" "}
+            <code title={hash}>{hash.slice(0, 12)}</code>
+          </>
+        )}
+      </dd>
+    </>
+  );
+}
+
 const DESIGNS: Readonly<Record<string, Key>> = {
   all_permutations: "design.permutations",
   williams: "design.williams",
   explicit: "design.explicit",
 };
-
-/** The number of orders in a study's design: as many as one block of its ledger has rows. */
-export function orderCount({ design, sequences }: StudyProtocol["orders"], n: number): number {
-  if (design === "explicit") return sequences?.length ?? 0;
-  if (design === "williams") return n % 2 === 0 || n === 1 ? n : 2 * n;
-  return factorial(n);
-}
-
-const factorial = (n: number): number => (n <= 1 ? 1 : n * factorial(n - 1));

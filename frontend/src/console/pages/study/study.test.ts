@@ -2,7 +2,7 @@ import type { Ledger, Slot } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
 import { offsetOfLine, place } from "../Problems";
 import { arrange, nextFree } from "./LedgerTab";
-import { orderCount } from "./Overview";
+import { orderCount } from "./orderCount";
 
 const ORDERS = [
   [0, 125],

@@ -34,7 +34,7 @@ export const versionsEn = {
   "versions.duplicate": "Duplicate",
   "versions.duplicate.key": "Key of the copy",
   "versions.duplicate.hint":
-    "Lower-case letters, digits, - and _. The copy has its own ledger and sessions.",
+    "Small letters, digits, - and _. The copy has its own ledger and sessions.",
   "versions.archive": "Archive",
   "versions.archive.title": "Archive this study?",
   "versions.archive.body":
