@@ -14,7 +14,7 @@ import { useTitle } from "../ui/page";
 import { Attention } from "./Attention";
 import classes from "./Bodies.module.css";
 import { BodyDropZone, BodyUploadList } from "./BodyUploadList";
-import { licenceName, titleOf } from "./names";
+import { licenceName, licenceWritten, titleOf } from "./names";
 import { bodiesQuery } from "./queries";
 import { StatureCard } from "./StatureCard";
 import { useBodyPicture } from "./useBodyPicture";
@@ -83,7 +83,7 @@ function BodyCard({ body }: { readonly body: BodyListed }): JSX.Element {
     body.triangles === null
       ? null
       : t("bodies.triangles", { count: number(body.triangles, language) }),
-    (body.licence?.name && licenceName(body.licence.name, t)) || null,
+    (body.licence !== null && licenceName(licenceWritten(body.licence), t)) || null,
   ];
   return (
     <li className={classes.card}>
@@ -97,7 +97,7 @@ function BodyCard({ body }: { readonly body: BodyListed }): JSX.Element {
             {body.name === null ? (
               <span className={classes.unnamed}>{t("bodies.unnamed")}</span>
             ) : (
-              <code className={classes.key}>{body.name}</code>
+              body.name !== titleOf(body) && <code className={classes.key}>{body.name}</code>
             )}
             {body.origin === "shipped" && <span>{t("bodies.shipped")}</span>}
           </span>

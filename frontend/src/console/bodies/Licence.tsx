@@ -1,10 +1,10 @@
 /** What the file of a body says of its author and terms. */
-import { Title } from "@mantine/core";
+import { Anchor, Title } from "@mantine/core";
 import type { BodyView } from "@shared/api/bodies";
-import type { JSX } from "react";
+import type { JSX, ReactNode } from "react";
 import { useTexts } from "../i18n";
 import classes from "./Bodies.module.css";
-import { knownLicence, licenceName } from "./names";
+import { knownLicence, licenceName, licenceWritten } from "./names";
 
 const USES = [
   ...(["commercial", "modification", "redistribution"] as const),
@@ -14,7 +14,23 @@ const USES = [
 export function Licence({ body }: { readonly body: BodyView }): JSX.Element {
   const { t } = useTexts();
   const { licence } = body;
-  const known = knownLicence(licence?.name ?? "");
+  const written = licence === null ? "" : licenceWritten(licence);
+  const known = knownLicence(written);
+  const unsaid =
+    licence === null
+      ? []
+      : [
+          ...(licence.title === "" ? [t("bodies.licence.title")] : []),
+          ...(licence.authors.length === 0 ? [t("bodies.licence.authors")] : []),
+          ...(licence.copyright === "" ? [t("bodies.licence.copyright")] : []),
+          ...(written === "" ? [t("bodies.licence.name")] : []),
+          ...(licence.url + licence.other_url === "" ? [t("bodies.licence.url")] : []),
+          ...(licence.wearers === "unknown" ? [t("bodies.licence.wearers")] : []),
+          ...USES.filter((use) => isUnsaid(licence.permissions[use])).map((use) =>
+            t(`bodies.use.${use}`),
+          ),
+          ...(licence.credit_needed === null ? [t("bodies.licence.credit")] : []),
+        ];
   return (
     <section className={classes.panel} aria-labelledby="body-licence">
       <Title order={2} size="h3" id="body-licence">
@@ -28,26 +44,30 @@ export function Licence({ body }: { readonly body: BodyView }): JSX.Element {
           <Entry name={t("bodies.licence.authors")}>{licence.authors.join(", ")}</Entry>
           <Entry name={t("bodies.licence.copyright")}>{licence.copyright}</Entry>
           <Entry name={t("bodies.licence.name")}>
-            {[
-              licenceName(licence.name, t),
-              known === null ? "" : t(`bodies.licence.means.${known}`),
-            ]
+            {[licenceName(written, t), known === null ? "" : t(`bodies.licence.means.${known}`)]
               .filter((words) => words !== "")
               .join(": ")}
           </Entry>
           <Entry name={t("bodies.licence.url")}>
-            {[licence.url, licence.other_url].filter((url) => url !== "").join(" ")}
+            {[licence.url, licence.other_url].filter((url) => url !== "").map(addressOf)}
           </Entry>
-          <Entry name={t("bodies.licence.wearers")}>{t(`bodies.wearers.${licence.wearers}`)}</Entry>
+          <Entry name={t("bodies.licence.wearers")}>
+            {licence.wearers === "unknown" ? "" : t(`bodies.wearers.${licence.wearers}`)}
+          </Entry>
           {USES.map((use) => (
             <Entry key={use} name={t(`bodies.use.${use}`)} status={licence.permissions[use]}>
-              {t(`bodies.permission.${licence.permissions[use] ?? "unknown"}`)}
+              {isUnsaid(licence.permissions[use])
+                ? ""
+                : t(`bodies.permission.${licence.permissions[use] ?? "unknown"}`)}
             </Entry>
           ))}
           <Entry name={t("bodies.licence.credit")}>
-            {t(`bodies.credit.${licence.credit_needed ?? "unknown"}`)}
+            {licence.credit_needed === null ? "" : t(`bodies.credit.${licence.credit_needed}`)}
           </Entry>
         </dl>
+      )}
+      {unsaid.length > 0 && (
+        <p className={classes.soft}>{t("bodies.licence.unsaid", { names: unsaid.join(", ") })}</p>
       )}
     </section>
   );
@@ -55,22 +75,40 @@ export function Licence({ body }: { readonly body: BodyView }): JSX.Element {
 
 interface EntryProps {
   readonly name: string;
-  readonly children: string;
+  /** What is not stated is told below, all in one sentence. */
+  readonly children: ReactNode;
   readonly status?: string | undefined;
 }
 
-function Entry({ name, children, status }: EntryProps): JSX.Element {
-  const { t } = useTexts();
+function Entry({ name, children, status }: EntryProps): JSX.Element | null {
+  if (children === "" || (Array.isArray(children) && children.length === 0)) return null;
   return (
     <div data-status={status}>
       <dt>{name}</dt>
-      <dd>
-        {children === "" ? (
-          <span className={classes.soft}>{t("bodies.licence.nothing")}</span>
-        ) : (
-          children
-        )}
-      </dd>
+      <dd>{children}</dd>
     </div>
+  );
+}
+
+const isUnsaid = (permission: string | undefined): boolean =>
+  permission === undefined || permission === "unknown";
+
+/** A web address as a link; what else stands there is shown as it is. */
+function addressOf(url: string): JSX.Element {
+  return /^https?:\/\//i.test(url) ? (
+    <Anchor
+      key={url}
+      href={url}
+      target="_blank"
+      rel="noreferrer"
+      inherit
+      className={classes.address ?? ""}
+    >
+      {url.replace(/^https?:\/\//i, "")}
+    </Anchor>
+  ) : (
+    <span key={url} className={classes.address}>
+      {url}
+    </span>
   );
 }

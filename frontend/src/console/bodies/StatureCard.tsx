@@ -6,10 +6,10 @@ import { Anchor, Select, Table, Title } from "@mantine/core";
 import type { CaptureListed } from "@shared/api/captures";
 import { captures } from "@shared/api/captures";
 import { decimals } from "@shared/format";
-import { useQuery } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import { useQueries, useQuery } from "@tanstack/react-query";
+import { type JSX, useMemo, useState } from "react";
 import { Link } from "wouter";
-import { BodyViewer } from "../bodyView/BodyViewer";
+import { BodyViewer, type RecordedWalk } from "../bodyView/BodyViewer";
 import { PAPER_AVATARS, statureOf } from "../captures/avatars";
 import { capturesQuery } from "../captures/queries";
 import { useTexts } from "../i18n";
@@ -29,6 +29,12 @@ const PRINTED = [
 
 export function StatureCard({ hash }: { readonly hash: string }): JSX.Element {
   const { t } = useTexts();
+  const listed = useQuery(capturesQuery);
+  const [chosen, setChosen] = useState<string | null>(null);
+  const usable = (listed.data?.captures ?? []).filter((one) => one.has_skeleton);
+  const capture =
+    chosen === GENERATED ? undefined : (usable.find(({ id }) => id === chosen) ?? usable[0]);
+  const recorded = useWalk(capture);
   return (
     <section className={classes.section} aria-labelledby="three-statures">
       <Title order={2} id="three-statures">
@@ -42,20 +48,50 @@ export function StatureCard({ hash }: { readonly hash: string }): JSX.Element {
           staturesM={STATURES_M}
           firstSide="front"
           isLabelled
+          recorded={recorded}
         />
-        <Loaded query={useQuery(capturesQuery)}>
-          {(page) => <Steps usable={page.captures.filter((one) => one.has_skeleton)} />}
+        <Loaded query={listed}>
+          {() => <Steps usable={usable} capture={capture} onChoose={setChosen} />}
         </Loaded>
       </div>
     </section>
   );
 }
 
-function Steps({ usable }: { readonly usable: readonly CaptureListed[] }): JSX.Element {
+/** The capture on the three statures; undefined for none, and where it cannot be put on them. */
+function useWalk(capture: CaptureListed | undefined): RecordedWalk | undefined {
+  const queries = useQueries({
+    queries: PAPER_AVATARS.map((avatar) => ({
+      queryKey: ["captures", capture?.id, "three-statures", avatar],
+      queryFn: () => captures.onAvatar(capture?.id ?? "", avatar, false),
+      enabled: capture !== undefined,
+      staleTime: Number.POSITIVE_INFINITY,
+    })),
+    combine: (all) => ({
+      isFailed: all.some(({ isError }) => isError),
+      motions: all.flatMap(({ data }) => data ?? []),
+    }),
+  });
+  const { isFailed, motions } = queries;
+  const title = capture?.title;
+  return useMemo(
+    () =>
+      title === undefined || isFailed
+        ? undefined
+        : { title, motions: motions.length === PAPER_AVATARS.length ? motions : null },
+    [title, isFailed, motions],
+  );
+}
+
+interface StepsProps {
+  readonly usable: readonly CaptureListed[];
+  /** Undefined for the generated walk. */
+  readonly capture: CaptureListed | undefined;
+  readonly onChoose: (id: string | null) => void;
+}
+
+function Steps({ usable, capture, onChoose }: StepsProps): JSX.Element {
   const { t } = useTexts();
-  const [chosen, setChosen] = useState<string | null>(null);
-  const capture =
-    chosen === GENERATED ? undefined : (usable.find(({ id }) => id === chosen) ?? usable[0]);
   return (
     <div className={classes.steps}>
       <Select
@@ -66,7 +102,7 @@ function Steps({ usable }: { readonly usable: readonly CaptureListed[] }): JSX.E
         ]}
         value={capture?.id ?? GENERATED}
         allowDeselect={false}
-        onChange={setChosen}
+        onChange={onChoose}
       />
       <StepTable id={capture?.id ?? null} />
       {capture === undefined ? (

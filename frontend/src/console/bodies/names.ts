@@ -44,6 +44,17 @@ export function knownLicence(written: string): KnownLicence | null {
   return known ?? SAME[plain] ?? null;
 }
 
+const APACHE = /apache\.org\/licenses\/LICENSE-2\.0/i;
+
+/**
+ * The licence under which a body may be used. Every VRM names the VRM licence, whose permissions it
+ * lists; the licence of its content, where it has one of its own, is the one beside it.
+ */
+export const licenceWritten = ({ name, other_url }: Licence): string =>
+  knownLicence(name) === "vrm_public" && APACHE.test(other_url) ? "Apache-2.0" : name;
+
+type Licence = Pick<NonNullable<BodyListed["licence"]>, "name" | "other_url">;
+
 /** The name of a licence in words, or as the file writes it. */
 export function licenceName(written: string, t: (key: Key) => string): string {
   const known = knownLicence(written);

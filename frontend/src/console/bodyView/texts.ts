@@ -4,6 +4,10 @@ export const bodyViewEn = {
   "bodyView.pose.rest": "T-pose",
   "bodyView.pose.stand": "Standing",
   "bodyView.pose.walk": "Walking (generated)",
+  "bodyView.pose.recorded": "Walking (capture)",
+  "bodyView.recorded.loading": "{{title}} is being transferred to the three statures",
+  "bodyView.heights":
+    "{{stature}} cm is the stature by its skeleton: the joint of the head stands at 87.5 % of it, as in people. What is drawn, hair and the size of the head included, reaches {{drawn}} m.",
   "bodyView.picture": "The body {{name}} in 3-D",
   "bodyView.loading": "Loading the body",
   "bodyView.failed": "The body cannot be shown: {{reason}}",
@@ -19,6 +23,10 @@ export const bodyViewDe: Readonly<Record<keyof typeof bodyViewEn, string>> = {
   "bodyView.pose.rest": "T-Pose",
   "bodyView.pose.stand": "Stehen",
   "bodyView.pose.walk": "Gehen (erzeugt)",
+  "bodyView.pose.recorded": "Gehen (Aufnahme)",
+  "bodyView.recorded.loading": "{{title}} wird auf die drei Körpergrößen übertragen",
+  "bodyView.heights":
+    "{{stature}} cm ist die Größe nach dem Skelett: Das Gelenk des Kopfes ist auf 87,5 % davon, wie bei Menschen. Was gezeichnet ist, mit Haaren und der Größe des Kopfes, reicht bis {{drawn}} m.",
   "bodyView.picture": "Der Körper {{name}} in 3-D",
   "bodyView.loading": "Der Körper wird geladen",
   "bodyView.failed": "Der Körper kann nicht angezeigt werden: {{reason}}",

@@ -21,8 +21,8 @@ export function useTransportTexts(): TransportTexts {
   return {
     play: t("stage.play"),
     pause: t("stage.pause"),
-    stepBack: t("stage.back"),
-    stepOn: t("stage.on"),
+    stepBack: (every) => t(every === 1 ? "stage.back" : "stage.back.every", { every }),
+    stepOn: (every) => t(every === 1 ? "stage.on" : "stage.on.every", { every }),
     scrubber: t("stage.scrubber"),
     speed: t("stage.speed"),
     loop: t("stage.loop"),
@@ -31,7 +31,8 @@ export function useTransportTexts(): TransportTexts {
         time: decimals(now, language, 2),
         duration: decimals(duration, language, 2),
       }),
-    frame: (frame, last) => t("stage.frame", { frame, last }),
+    frame: (frame, last, every) =>
+      t(every === 1 ? "stage.frame" : "stage.frame.every", { frame, last, every }),
     gaps: t("stage.gaps"),
     unseen: (names) => {
       if (names.length === 0) return t("stage.unseen.none");

@@ -49,6 +49,11 @@ export const captureViewEn = {
   "stage.pause": "Pause (space)",
   "stage.back": "One frame back (left arrow; ten with Shift)",
   "stage.on": "One frame forward (right arrow; ten with Shift)",
+  "stage.back.every":
+    "One drawn frame back (left arrow; ten with Shift): {{every}} frames of the recording",
+  "stage.on.every":
+    "One drawn frame forward (right arrow; ten with Shift): {{every}} frames of the recording",
+  "stage.frame.every": "frame {{frame}} of {{last}} (one in {{every}} is drawn)",
   "stage.scrubber": "Position in the movement",
   "stage.speed": "Speed",
   "stage.loop": "Loop",
@@ -174,6 +179,11 @@ export const captureViewDe: Readonly<Record<keyof typeof captureViewEn, string>>
   "stage.pause": "Anhalten (Leertaste)",
   "stage.back": "Ein Bild zurück (Pfeil links; mit Umschalt zehn)",
   "stage.on": "Ein Bild vor (Pfeil rechts; mit Umschalt zehn)",
+  "stage.back.every":
+    "Ein gezeichnetes Bild zurück (Pfeil links; zehn mit Umschalttaste): {{every}} Bilder der Aufnahme",
+  "stage.on.every":
+    "Ein gezeichnetes Bild vor (Pfeil rechts; zehn mit Umschalttaste): {{every}} Bilder der Aufnahme",
+  "stage.frame.every": "Bild {{frame}} von {{last}} (eines von {{every}} ist gezeichnet)",
   "stage.scrubber": "Stelle in der Bewegung",
   "stage.speed": "Tempo",
   "stage.loop": "Endlosschleife",

@@ -2,7 +2,7 @@
 import { ActionIcon, SegmentedControl, Switch, Tooltip } from "@mantine/core";
 import { type JSX, useEffect, useMemo } from "react";
 import { Icon } from "../ui/Icon";
-import { durationOf, frameAt, type PointMotion, recordedFrame, timeOf } from "./motion";
+import { drawnEvery, durationOf, frameAt, type PointMotion, recordedFrame, timeOf } from "./motion";
 import { gapStretches, unseenNames } from "./placing";
 import classes from "./Transport.module.css";
 import { type Playback, SPEEDS } from "./usePlayback";
@@ -10,14 +10,15 @@ import { type Playback, SPEEDS } from "./usePlayback";
 export interface TransportTexts {
   readonly play: string;
   readonly pause: string;
-  readonly stepBack: string;
-  readonly stepOn: string;
+  /** `every`: recorded frames from one drawn frame to the next. */
+  readonly stepBack: (every: number) => string;
+  readonly stepOn: (every: number) => string;
   readonly scrubber: string;
   readonly speed: string;
   readonly loop: string;
   /** `1.25 s of 2.85 s`. */
   readonly time: (time: number, duration: number) => string;
-  readonly frame: (frame: number, last: number) => string;
+  readonly frame: (frame: number, last: number, every: number) => string;
   /** The accessible label of the strip of gaps. */
   readonly gaps: string;
   readonly unseen: (names: readonly string[]) => string;
@@ -32,11 +33,13 @@ interface TransportProps {
 export function Transport({ motion, playback, texts }: TransportProps): JSX.Element {
   const frame = frameAt(motion, playback.time);
   const last = motion.frames - 1;
+  const every = drawnEvery(motion);
   const go = (to: number) => playback.seek(timeOf(motion, Math.min(Math.max(to, 0), last)));
   useTransportKeys({ toggle: playback.toggle, step: (by) => go(frame + by) });
   const words = `${texts.time(playback.time, durationOf(motion))}, ${texts.frame(
     recordedFrame(motion, frame),
     recordedFrame(motion, last),
+    every,
   )}`;
   return (
     <div className={classes.transport}>
@@ -54,19 +57,19 @@ export function Transport({ motion, playback, texts }: TransportProps): JSX.Elem
         <GapStrip motion={motion} label={texts.gaps} />
       </div>
       <div className={classes.row}>
-        <Press icon="back" name={texts.stepBack} onClick={() => go(frame - 1)} />
+        <Press icon="back" name={texts.stepBack(every)} onClick={() => go(frame - 1)} />
         <Press
           icon={playback.playing ? "pause" : "play"}
           name={playback.playing ? texts.pause : texts.play}
           filled
           onClick={playback.toggle}
         />
-        <Press icon="forward" name={texts.stepOn} onClick={() => go(frame + 1)} />
+        <Press icon="forward" name={texts.stepOn(every)} onClick={() => go(frame + 1)} />
         <span className={`${classes.playhead} numbers`} data-frame={recordedFrame(motion, frame)}>
           {texts.time(playback.time, durationOf(motion))}
           <span className={classes.frame}>
             {" · "}
-            {texts.frame(recordedFrame(motion, frame), recordedFrame(motion, last))}
+            {texts.frame(recordedFrame(motion, frame), recordedFrame(motion, last), every)}
           </span>
         </span>
         <SegmentedControl

@@ -17,12 +17,13 @@ const MAX_LABELS = 14;
 
 export function makeFloor(plan: FloorPlan, palette: StagePalette): Group {
   const floor = new Group();
-  floor.add(lines(plan, 0.5, palette.line, 0.6), lines(plan, 1, palette.lineStrong, 0.55));
+  floor.add(lines(plan, palette.lineStrong, 0.55));
   for (const axis of [0, 1] as const) {
     const [first, last] = [plan.min[axis], plan.max[axis]];
     const cells = Math.round((last - first) / plan.step);
     const every = Math.max(1, Math.ceil(cells / MAX_LABELS));
-    for (let cell = 1; cell <= cells; cell += every) {
+    // The corner belongs to one of both edges, or it would be named twice.
+    for (let cell = 1; cell <= cells - axis; cell += every) {
       const value = first + cell * plan.step;
       const text = `${tidy(value)} m`;
       const margin = 0.22 * plan.step;
@@ -52,8 +53,8 @@ export function disposeLabel(label: Sprite): void {
 
 const tidy = (value: number): string => String(Number(value.toPrecision(6)) + 0).replace("-", "−");
 
-function lines(plan: FloorPlan, part: number, colour: string, opacity: number): LineSegments {
-  const step = plan.step * part;
+function lines(plan: FloorPlan, colour: string, opacity: number): LineSegments {
+  const { step } = plan;
   const ends: number[] = [];
   const [minX, minZ] = plan.min;
   const [maxX, maxZ] = plan.max;

@@ -4,6 +4,7 @@ import { floorPlan, stepFor } from "./floor";
 import {
   boxOf,
   decodeMotion,
+  drawnEvery,
   durationOf,
   frameAt,
   MotionError,
@@ -90,6 +91,10 @@ describe("time and frame", () => {
 
   it("give the frame number of the recording if frames were left out", () => {
     expect(recordedFrame(motion, 10)).toBe(20);
+    // One press goes on by one drawn frame, which is said to be two of the recording.
+    expect(drawnEvery(motion)).toBe(2);
+    expect(recordedFrame(motion, 11) - recordedFrame(motion, 10)).toBe(drawnEvery(motion));
+    expect(drawnEvery({ ...motion, recordedRateHz: motion.rateHz })).toBe(1);
   });
 
   it("advance during playback, to the end or in a loop", () => {

@@ -138,6 +138,13 @@ export const timeOf = (motion: PointMotion, frame: number): Seconds =>
 export const recordedFrame = (motion: PointMotion, frame: number): number =>
   Math.round((frame / motion.rateHz) * motion.recordedRateHz);
 
+/**
+ * Recorded frames from one drawn frame to the next: of a fast recording, the server leaves frames
+ * out for drawing, so that a step of the picture is several of the recording.
+ */
+export const drawnEvery = ({ rateHz, recordedRateHz }: PointMotion): number =>
+  Math.max(1, Math.round(recordedRateHz / rateHz));
+
 export interface Box {
   readonly min: readonly [x: number, y: number, z: number];
   readonly max: readonly [x: number, y: number, z: number];

@@ -104,6 +104,11 @@ export class BodyModel {
     return this.#aboveJointsM;
   }
 
+  /** How high the skin reaches above its soles in the T-pose, hair and hats included, in the model's own size. */
+  get drawnHeightM(): number {
+    return this.aboveJointsM + Math.max(...this.binding.joints_m.map(([, y = 0]) => y));
+  }
+
   get triangles(): number {
     return this.meshes.reduce((sum, { geometry }) => {
       const corners = geometry.index?.count ?? geometry.getAttribute("position").count;
