@@ -17,6 +17,7 @@ import { ListTable } from "../ui/tables";
 import { avatarQuery, avatars } from "./api";
 import classes from "./Editor.module.css";
 import { JUST_MADE } from "./justMade";
+import { originOf } from "./origin";
 import { keyFrom } from "./SaveDialog";
 
 export function AvatarsPage(): JSX.Element {
@@ -60,7 +61,7 @@ export function AvatarsPage(): JSX.Element {
                   </Table.Td>
                   <Table.Td>
                     {t("avatars.version", { number: one.newest.number })} ·{" "}
-                    {t(`avatars.origin.${one.newest.origin}`)}
+                    {originOf(one.newest, one.key, all, t)}
                   </Table.Td>
                   <Table.Td className="numbers">
                     {one.axes === null
@@ -115,7 +116,7 @@ function NewAvatar({ all, isOpen, onClose }: NewAvatarProps): JSX.Element {
     mutationFn: async () => {
       const { newest } = await queries.fetchQuery(avatarQuery(from));
       const note = t("avatars.new.note", { key: from, number: newest.number });
-      return avatars.add(key, title.trim(), note, newest.configuration);
+      return avatars.add(key, title.trim(), note, newest.configuration, "by_hand");
     },
     onSuccess: (made) => {
       queries.setQueryData(avatarQuery(made.key).queryKey, made);

@@ -4,7 +4,8 @@ import type { JSX } from "react";
 import { axisName } from "../avatarChanges/axes";
 import { groupName, layerName } from "../avatarChanges/words";
 import { type Key, useTexts } from "../i18n";
-import { NumbersTable } from "../ui/tables";
+import numbers from "../ui/NumbersTable.module.css";
+import { ScrollBox } from "../ui/tables";
 import {
   type AvatarFile,
   type Compliance,
@@ -14,6 +15,7 @@ import {
   type Field,
   UNITS,
 } from "./axes";
+import { changeOf, grouped } from "./differing";
 import classes from "./Editor.module.css";
 import { valueAt } from "./merge";
 
@@ -32,22 +34,59 @@ export function Differences(props: DifferencesProps): JSX.Element {
   const { t } = texts;
   const found = differences(before, after);
   if (found.length === 0) return <p className={classes.soft}>{t("avatars.same")}</p>;
+  const titles = [
+    t("avatars.what"),
+    t("avatars.value"),
+    ...(start === undefined ? [] : [start.column]),
+    ...columns,
+    t("avatars.compare.difference"),
+    "%",
+  ];
   return (
-    <NumbersTable
-      label={label}
-      className={classes.losses}
-      columns={[
-        t("avatars.what"),
-        t("avatars.value"),
-        ...(start === undefined ? [] : [start.column]),
-        ...columns,
-      ]}
-      rows={found.map((one) => {
-        const [subject, field] = namesOf(one, texts);
-        const began = start === undefined ? [] : [inWords(valueAt(start.file, one.path), texts)];
-        return [subject, field, ...began, inWords(one.before, texts), inWords(one.after, texts)];
-      })}
-    />
+    <>
+      <p className={`${classes.soft} numbers`}>
+        {t("avatars.compare.count", { count: found.length })}
+      </p>
+      <ScrollBox label={label} className={`${classes.losses} ${classes.scrolls}`}>
+        <table className={`${numbers.table} numbers`}>
+          <thead>
+            <tr>
+              {titles.map((title) => (
+                <th key={title} scope="col">
+                  {title}
+                </th>
+              ))}
+            </tr>
+          </thead>
+          {grouped(found).map(([group, rows]) => (
+            <tbody key={group}>
+              <tr>
+                <th colSpan={titles.length} scope="rowgroup" className={classes.groupHead}>
+                  {groupName(texts, group)} ({rows.length})
+                </th>
+              </tr>
+              {rows.map((one) => {
+                const [subject, field] = namesOf(one, texts);
+                const began =
+                  start === undefined ? [] : [inWords(valueAt(start.file, one.path), texts)];
+                const cells = [
+                  ...[subject, field, ...began],
+                  ...[inWords(one.before, texts), inWords(one.after, texts)],
+                  ...changeOf(one, texts.language),
+                ];
+                return (
+                  <tr key={one.path.join(".")}>
+                    {cells.map((cell, at) => (
+                      <td key={titles[at]}>{cell}</td>
+                    ))}
+                  </tr>
+                );
+              })}
+            </tbody>
+          ))}
+        </table>
+      </ScrollBox>
+    </>
   );
 }
 

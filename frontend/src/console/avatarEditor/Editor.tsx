@@ -81,6 +81,11 @@ export function AvatarEditor(props: AvatarEditorProps): JSX.Element {
     if (isJustMade()) tabs.current?.querySelector<HTMLElement>(SHOWN_TAB)?.focus();
   }, []);
   const toTab = () => tabs.current?.querySelector<HTMLElement>(SHOWN_TAB)?.focus();
+  // To the cell of the table where the arrows begin, or to the tabs where there is no table.
+  const toWork = () => {
+    const cell = tabs.current?.querySelector<HTMLElement>('[role="treegrid"] [tabindex="0"]');
+    (cell ?? tabs.current?.querySelector<HTMLElement>(SHOWN_TAB))?.focus();
+  };
   const chosenAxis = axisOf(configuration, chosen);
   const bodies = useQuery(bodiesQuery);
   const neutral = bodies.data?.humanoids.find(({ name }) => name === NEUTRAL);
@@ -117,6 +122,9 @@ export function AvatarEditor(props: AvatarEditorProps): JSX.Element {
   return (
     <div className={classes.page}>
       <LeaveGuard unsaved={isChanged && !isReadOnly} />
+      <button type="button" className={classes.toTable} onClick={toWork}>
+        {t("avatars.toTable")}
+      </button>
       <Head avatar={avatar} base={base} work={work} unsaved={unsaved}>
         {!isReadOnly && (
           <div className={classes.buttons}>
@@ -138,102 +146,112 @@ export function AvatarEditor(props: AvatarEditorProps): JSX.Element {
           {t("avatars.missing.instead", { number: base.number })}
         </Notice>
       )}
-      <KeptDrafts kept={kept} avatar={avatar} base={base} configuration={configuration} />
+      <KeptDrafts
+        kept={kept}
+        avatar={avatar}
+        base={base}
+        configuration={configuration}
+        onGone={toTab}
+      />
       <Mirrored mirroring={mirroring} work={work} onGone={toTab} />
       <Trouble work={work} onUnderstood={toTab} />
-      <div className={classes.columns} data-wide={TABS[tab].isWide || undefined}>
-        {!TABS[tab].isWide && (
-          <JointPicture
-            configuration={configuration}
-            bodyHash={bodyHash}
-            chosen={chosenAxis}
-            selected={view === "axes" ? selected : NO_AXES}
-            onChoose={setChosen}
-          />
-        )}
-        <Tabs
-          value={tab}
-          onChange={(value) => value !== null && setTab(value as Tab)}
-          keepMounted={false}
-          ref={tabs}
-          className={classes.tabs ?? ""}
-        >
-          <Tabs.List aria-label={avatar.title}>
-            {Object.keys(TABS).map((name) => (
-              <Tabs.Tab key={name} value={name}>
-                {t(`avatars.tab.${name as Tab}`)}
-              </Tabs.Tab>
-            ))}
-          </Tabs.List>
-          <Tabs.Panel value="joints">
-            <JointTable
+      {/* Above both columns, so that it stays where it is when the picture goes. */}
+      <Tabs
+        value={tab}
+        onChange={(value) => value !== null && setTab(value as Tab)}
+        keepMounted={false}
+        ref={tabs}
+        className={classes.tabs ?? ""}
+      >
+        <Tabs.List aria-label={avatar.title}>
+          {Object.keys(TABS).map((name) => (
+            <Tabs.Tab key={name} value={name}>
+              {t(`avatars.tab.${name as Tab}`)}
+            </Tabs.Tab>
+          ))}
+        </Tabs.List>
+        <div className={classes.columns} data-wide={TABS[tab].isWide || undefined}>
+          {!TABS[tab].isWide && (
+            <JointPicture
               configuration={configuration}
-              base={base.configuration}
-              joints={work.joints}
-              baseJoints={base.joints}
-              view={view}
-              onView={(wished) => void show(wished)}
-              chosen={chosen}
-              onChoose={setChosen}
-              selected={selected}
-              onSelected={setSelected}
-              edit={work.edit}
-              isReadOnly={isReadOnly}
-            />
-          </Tabs.Panel>
-          <Tabs.Panel value="body">
-            <BodyPanel
-              configuration={configuration}
-              base={base.configuration}
-              edit={work.edit}
-              isReadOnly={isReadOnly}
-            />
-          </Tabs.Panel>
-          <Tabs.Panel value="collisions">
-            <CollisionPanel
-              configuration={configuration}
-              base={base.configuration}
-              edit={work.edit}
-              isReadOnly={isReadOnly}
-            />
-          </Tabs.Panel>
-          <Tabs.Panel value="casts">
-            <CastPanel configuration={configuration} edit={work.edit} isReadOnly={isReadOnly} />
-          </Tabs.Panel>
-          <Tabs.Panel value="tryout">
-            <Tryout
-              title={avatar.title}
-              configuration={configuration}
-              axis={chosenAxis}
-              onAxis={setChosen}
-            />
-          </Tabs.Panel>
-          <Tabs.Panel value="tuning">
-            <TuningPanel
-              avatarKey={avatar.key}
-              base={base}
-              configuration={configuration}
-              contentHash={work.contentHash}
+              bodyHash={bodyHash}
               chosen={chosenAxis}
               selected={view === "axes" ? selected : NO_AXES}
-              edit={work.edit}
-              isReadOnly={isReadOnly}
+              onChoose={setChosen}
             />
-          </Tabs.Panel>
-          <Tabs.Panel value="versions">
-            <VersionsPanel
-              avatar={avatar}
-              basedOn={base.number}
-              linked={linked}
-              onUse={can("design") ? setUsed : undefined}
-              configuration={configuration}
-              edit={work.edit}
-              onFile={(one) => void openFile(one)}
-              isReadOnly={isReadOnly}
-            />
-          </Tabs.Panel>
-        </Tabs>
-      </div>
+          )}
+          <div className={classes.panelsOfTabs}>
+            <Tabs.Panel value="joints">
+              <JointTable
+                configuration={configuration}
+                base={base.configuration}
+                joints={work.joints}
+                baseJoints={base.joints}
+                view={view}
+                onView={(wished) => void show(wished)}
+                chosen={chosen}
+                onChoose={setChosen}
+                selected={selected}
+                onSelected={setSelected}
+                edit={work.edit}
+                isReadOnly={isReadOnly}
+                onCompliance={() => setTab("body")}
+              />
+            </Tabs.Panel>
+            <Tabs.Panel value="body">
+              <BodyPanel
+                configuration={configuration}
+                base={base.configuration}
+                edit={work.edit}
+                isReadOnly={isReadOnly}
+              />
+            </Tabs.Panel>
+            <Tabs.Panel value="collisions">
+              <CollisionPanel
+                configuration={configuration}
+                base={base.configuration}
+                edit={work.edit}
+                isReadOnly={isReadOnly}
+              />
+            </Tabs.Panel>
+            <Tabs.Panel value="casts">
+              <CastPanel configuration={configuration} edit={work.edit} isReadOnly={isReadOnly} />
+            </Tabs.Panel>
+            <Tabs.Panel value="tryout">
+              <Tryout
+                title={avatar.title}
+                configuration={configuration}
+                axis={chosenAxis}
+                onAxis={setChosen}
+              />
+            </Tabs.Panel>
+            <Tabs.Panel value="tuning">
+              <TuningPanel
+                avatarKey={avatar.key}
+                base={base}
+                configuration={configuration}
+                contentHash={work.contentHash}
+                chosen={chosenAxis}
+                selected={view === "axes" ? selected : NO_AXES}
+                edit={work.edit}
+                isReadOnly={isReadOnly}
+              />
+            </Tabs.Panel>
+            <Tabs.Panel value="versions">
+              <VersionsPanel
+                avatar={avatar}
+                basedOn={base.number}
+                linked={linked}
+                onUse={can("design") ? setUsed : undefined}
+                configuration={configuration}
+                edit={work.edit}
+                onFile={(one) => void openFile(one)}
+                isReadOnly={isReadOnly}
+              />
+            </Tabs.Panel>
+          </div>
+        </div>
+      </Tabs>
       <ConvertDialog
         losses={losses}
         isReadOnly={isReadOnly}
@@ -258,7 +276,7 @@ export function AvatarEditor(props: AvatarEditorProps): JSX.Element {
         onClose={() => setFile(null)}
         onReplace={({ name, configuration: read }) => {
           setFile(null);
-          void work.edit(loadFile(read), t("avatars.did.file", { name }));
+          void work.edit(loadFile(read), t("avatars.did.file", { name }), "loaded");
         }}
       />
       <UseInStudy
@@ -276,6 +294,7 @@ export function AvatarEditor(props: AvatarEditorProps): JSX.Element {
         basedOn={base.number}
         base={base.configuration}
         configuration={configuration}
+        made={work.madeSince(base.content_hash)}
         onFollow={follow}
         onSaved={(saved) => {
           setSaving(false);

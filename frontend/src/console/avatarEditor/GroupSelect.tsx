@@ -52,7 +52,7 @@ export function DrivenSelect({ configuration, ...props }: DrivenSelectProps): JS
 }
 
 export const SELECTION = "selection";
-const JOINT = "joint";
+export const JOINT = "joint";
 
 export interface Marked {
   readonly chosen: string | null;

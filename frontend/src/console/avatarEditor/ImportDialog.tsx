@@ -36,7 +36,7 @@ export function ImportDialog(props: ImportDialogProps): JSX.Element {
     >
       {file !== null && (
         <div className={classes.stack}>
-          {count > 0 && <p>{t("avatars.import.lead", { count })}</p>}
+          <p>{count === 0 ? t("avatars.import.same") : t("avatars.import.lead", { count })}</p>
           {count > 0 && unsaved > 0 && <p>{t("avatars.import.unsaved", { count: unsaved })}</p>}
           <Differences
             label={t("avatars.compare")}
@@ -46,11 +46,9 @@ export function ImportDialog(props: ImportDialogProps): JSX.Element {
           />
           <Group justify="flex-end">
             <Button variant="default" onClick={onClose} data-autofocus>
-              {t("action.cancel")}
+              {t(count === 0 ? "action.close" : "action.cancel")}
             </Button>
-            <Button disabled={count === 0} onClick={() => onReplace(file)}>
-              {t("avatars.import.do")}
-            </Button>
+            {count > 0 && <Button onClick={() => onReplace(file)}>{t("avatars.import.do")}</Button>}
           </Group>
         </div>
       )}

@@ -24,6 +24,7 @@ import {
   sectionOf,
   UNITS,
 } from "./axes";
+import { DampingHint } from "./DampingHint";
 import classes from "./Editor.module.css";
 import { type GridRow, type GridSection, NumberGrid } from "./NumberGrid";
 import { setField, setJointField } from "./operations";
@@ -46,6 +47,8 @@ interface JointTableProps {
   readonly onSelected: (selected: ReadonlySet<string>) => void;
   readonly edit: (operations: readonly Operation[], label: string) => Promise<boolean>;
   readonly isReadOnly: boolean;
+  /** Open the setting that lets a group give way. */
+  readonly onCompliance: () => void;
 }
 
 const DIGITS = 3;
@@ -203,6 +206,14 @@ export function JointTable(props: JointTableProps): JSX.Element {
           />
         )}
       </div>
+      {!isReadOnly && view === "axes" && (
+        <DampingHint
+          base={base}
+          configuration={configuration}
+          edit={edit}
+          onCompliance={props.onCompliance}
+        />
+      )}
       {!isReadOnly && view === "axes" && (
         <Together
           configuration={configuration}

@@ -3,7 +3,7 @@ import { Button, Group } from "@mantine/core";
 import { dateTime } from "@shared/format";
 import { Notice } from "@shared/ui/Notice";
 import { useQueryClient } from "@tanstack/react-query";
-import { type JSX, useEffect, useState } from "react";
+import { type JSX, useEffect, useLayoutEffect, useRef, useState } from "react";
 import { useAccount } from "../account";
 import { useTexts } from "../i18n";
 import { type AvatarVersionDetail, type AvatarView, versionQuery } from "./api";
@@ -111,11 +111,26 @@ interface KeptDraftsProps {
   readonly avatar: AvatarView;
   readonly base: AvatarVersionDetail;
   readonly configuration: AvatarFile;
+  /** The offer goes, and with it the button that has the focus. */
+  readonly onGone: () => void;
 }
 
 export function KeptDrafts(props: KeptDraftsProps): JSX.Element {
-  const { kept, avatar, base, configuration } = props;
+  const { kept, avatar, base, configuration, onGone } = props;
   const { t } = useTexts();
+  const offers = useRef<HTMLDivElement>(null);
+  const count = kept.drafts.length;
+  const before = useRef(count);
+  // After the offer has gone: its button was disabled while the server answered, so that the focus
+  // may have been lost long before.
+  useLayoutEffect(() => {
+    const isFewer = count < before.current;
+    before.current = count;
+    if (!isFewer || document.activeElement !== document.body) return;
+    const left = offers.current?.querySelector<HTMLElement>("button");
+    if (left == null) onGone();
+    else left.focus();
+  }, [count, onGone]);
   return (
     <>
       {!kept.isKept && (
@@ -129,9 +144,11 @@ export function KeptDrafts(props: KeptDraftsProps): JSX.Element {
       )}
       {kept.drafts.length > 0 && (
         <Notice tone="info" title={t("avatars.kept")}>
-          {kept.drafts.map((draft) => (
-            <Offer key={draft.slot} draft={draft} kept={kept} avatar={avatar} base={base} />
-          ))}
+          <div ref={offers}>
+            {kept.drafts.map((draft) => (
+              <Offer key={draft.slot} draft={draft} kept={kept} avatar={avatar} base={base} />
+            ))}
+          </div>
         </Notice>
       )}
     </>

@@ -9,7 +9,7 @@ import { nameOf } from "../account";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { DialogButtons } from "../ui/DialogButtons";
-import { type AvatarView, avatarQuery, avatars } from "./api";
+import { type AvatarView, avatarQuery, avatars, type Made } from "./api";
 import { type AvatarFile, differences } from "./axes";
 import { Differences } from "./Differences";
 import classes from "./Editor.module.css";
@@ -24,6 +24,8 @@ interface SaveDialogProps {
   readonly basedOn: number;
   readonly base: AvatarFile;
   readonly configuration: AvatarFile;
+  /** How the values were found. */
+  readonly made: Made;
   readonly onSaved: (saved: AvatarView) => void;
   /** Put one's own changes onto what somebody else has saved; false if that cannot be done. */
   readonly onFollow: (saved: AvatarView) => Promise<boolean>;
@@ -53,8 +55,8 @@ export function SaveDialog(props: SaveDialogProps): JSX.Element {
   const save = useMutation({
     mutationFn: (on: number) =>
       as === "version"
-        ? avatars.addVersion(avatarKey, on, note, configuration)
-        : avatars.add(key, name.trim(), note, configuration),
+        ? avatars.addVersion(avatarKey, on, note, configuration, props.made)
+        : avatars.add(key, name.trim(), note, configuration, props.made),
     onSuccess: async (saved) => {
       queries.setQueryData(avatarQuery(saved.key).queryKey, saved);
       await queries.invalidateQueries({ queryKey: ["avatars"], exact: true });

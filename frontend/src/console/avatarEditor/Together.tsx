@@ -6,7 +6,7 @@ import { useTexts } from "../i18n";
 import type { Operation } from "./api";
 import { type AvatarFile, FIELDS, type Field, partOf, UNITS } from "./axes";
 import classes from "./Editor.module.css";
-import { ScopeSelect, SELECTION, targetsOf } from "./GroupSelect";
+import { JOINT, ScopeSelect, SELECTION, targetsOf } from "./GroupSelect";
 import { resetGroup, setField } from "./operations";
 
 interface TogetherProps {
@@ -34,7 +34,8 @@ export function Together(props: TogetherProps): JSX.Element {
   const { selected, edit } = props;
   const texts = useTexts();
   const { t } = texts;
-  const [scope, setScope] = useState<string>("all");
+  // One number must not overwrite every motor: it begins with the chosen joint.
+  const [scope, setScope] = useState<string>(props.chosen === null ? "all" : JOINT);
   const [way, setWay] = useState<Way>("set");
   const [field, setField_] = useState<Field>("kp_nm_per_rad");
   const [value, setValue] = useState<number | string>("");

@@ -1,5 +1,5 @@
 /** All versions of an avatar: their notes, how they differ from the work, loading, and files. */
-import { Button, FileButton } from "@mantine/core";
+import { Button, FileButton, Select } from "@mantine/core";
 import { dateTime } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
@@ -8,12 +8,21 @@ import { Link } from "wouter";
 import { nameOf } from "../account";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
-import { type AvatarVersion, type AvatarView, avatars, type Operation, versionQuery } from "./api";
+import {
+  type AvatarVersion,
+  type AvatarVersionDetail,
+  type AvatarView,
+  avatars,
+  type Operation,
+  versionQuery,
+} from "./api";
 import type { AvatarFile } from "./axes";
 import { Differences } from "./Differences";
 import classes from "./Editor.module.css";
 import { loadVersion } from "./operations";
+import { originOf } from "./origin";
 import { TakeFrom } from "./TakeFrom";
+import { savedAvatarsQuery } from "./tryout/source";
 import { UsedBy } from "./UsedBy";
 
 interface VersionsPanelProps {
@@ -32,6 +41,7 @@ interface VersionsPanelProps {
 export function VersionsPanel(props: VersionsPanelProps): JSX.Element {
   const { avatar, basedOn, linked, onUse, configuration, edit, onFile, isReadOnly } = props;
   const { t, language } = useTexts();
+  const all = useQuery(savedAvatarsQuery);
   const [compared, setCompared] = useState<number | null>(linked === basedOn ? null : linked);
   // A file that was corrected outside can be chosen again.
   const forget = useRef<() => void>(null);
@@ -55,7 +65,7 @@ export function VersionsPanel(props: VersionsPanelProps): JSX.Element {
                   {version.note === "" ? t("avatars.noNote") : firstSentence(version)}
                 </strong>
                 <span className={classes.soft}>
-                  {t(`avatars.origin.${version.origin}`)} · {nameOf(version.by)} ·{" "}
+                  {originOf(version, avatar.key, all.data ?? [], t)} · {nameOf(version.by)} ·{" "}
                   {dateTime(version.at, language)} ·{" "}
                   <code title={version.content_hash}>{version.content_hash.slice(0, 12)}</code>
                   {version.number === basedOn &&
@@ -130,7 +140,7 @@ export function VersionsPanel(props: VersionsPanelProps): JSX.Element {
               {compared === version.number && (
                 <div className={classes.compared}>
                   <Compared
-                    avatarKey={avatar.key}
+                    avatar={avatar}
                     number={compared}
                     configuration={configuration}
                     work={
@@ -179,25 +189,68 @@ export function VersionsPanel(props: VersionsPanelProps): JSX.Element {
 const firstSentence = ({ note }: AvatarVersion): string => note.split(/(?<=\.)\s/, 1)[0] ?? note;
 
 interface ComparedProps {
-  readonly avatarKey: string;
+  readonly avatar: AvatarView;
   readonly number: number;
   readonly configuration: AvatarFile;
   /** What it is compared with. */
   readonly work: string;
 }
 
-function Compared({ avatarKey, number, configuration, work }: ComparedProps): JSX.Element {
+function Compared({ avatar, number, configuration, work }: ComparedProps): JSX.Element {
   const { t } = useTexts();
+  const [other, setOther] = useState<number | null>(null);
+  const version = useQuery(versionQuery(avatar.key, number));
+  const second = useQuery({
+    ...versionQuery(avatar.key, other ?? number),
+    enabled: other !== null,
+  });
+  const others = avatar.versions.filter((one) => one.number !== number);
+  const nameOfVersion = (one: number) => t("avatars.version", { number: one });
+  // What came first stands first, so that the difference is what has changed since.
+  const isSwapped = other !== null && other < number;
+  const differencesOf = (one: AvatarVersionDetail, after: AvatarFile) => (
+    <Differences
+      label={t("avatars.compare")}
+      before={isSwapped ? after : one.configuration}
+      after={isSwapped ? one.configuration : after}
+      columns={
+        other === null
+          ? [nameOfVersion(number), work]
+          : [nameOfVersion(Math.min(number, other)), nameOfVersion(Math.max(number, other))]
+      }
+    />
+  );
   return (
-    <Loaded query={useQuery(versionQuery(avatarKey, number))}>
-      {(version) => (
-        <Differences
-          label={t("avatars.compare")}
-          before={version.configuration}
-          after={configuration}
-          columns={[t("avatars.version", { number }), work]}
+    <div className={classes.stack}>
+      {others.length > 0 && (
+        <Select
+          size="xs"
+          w={260}
+          label={t("avatars.compare.with", { number })}
+          allowDeselect={false}
+          value={other === null ? WORK : String(other)}
+          onChange={(value) => setOther(value === WORK || value === null ? null : Number(value))}
+          data={[
+            { value: WORK, label: work },
+            ...others.map((one) => ({
+              value: String(one.number),
+              label: nameOfVersion(one.number),
+            })),
+          ]}
         />
       )}
-    </Loaded>
+      <Loaded query={version}>
+        {(one) =>
+          other === null ? (
+            differencesOf(one, configuration)
+          ) : (
+            <Loaded query={second}>{(two) => differencesOf(one, two.configuration)}</Loaded>
+          )
+        }
+      </Loaded>
+    </div>
   );
 }
+
+/** The choice of what is being edited, or shown. */
+const WORK = "work";

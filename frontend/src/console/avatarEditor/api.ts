@@ -15,6 +15,9 @@ export type Loss = Schemas["LossView"];
 export type Operation = Schemas["AvatarEdit"]["operations"][number];
 export type ColliderKind = AvatarFile["colliders"];
 
+/** How the values of a version were found, as far as people say it. */
+export type Made = Exclude<AvatarVersion["origin"], "shipped">;
+
 const at = (key: string) => ({ params: { path: { key } } });
 
 export const avatarQuery = (key: string) =>
@@ -45,17 +48,23 @@ export const avatars = {
     answer<AvatarEdited>(server.POST("/api/avatars/edit", { body: { configuration, operations } })),
   check: (text: string) =>
     answer<AvatarCheck>(server.POST("/api/avatars/check", { body: { text } })),
-  add: (key: string, title: string, note: string, configuration: AvatarFile) =>
+  add: (key: string, title: string, note: string, configuration: AvatarFile, origin: Made) =>
     answer<AvatarView>(
       server.POST("/api/avatars", {
-        body: { key, title, origin: "by_hand", note, configuration },
+        body: { key, title, origin, note, configuration },
       }),
     ),
-  addVersion: (key: string, basedOn: number, note: string, configuration: AvatarFile) =>
+  addVersion: (
+    key: string,
+    basedOn: number,
+    note: string,
+    configuration: AvatarFile,
+    origin: Made,
+  ) =>
     answer<AvatarView>(
       server.POST("/api/avatars/{key}/versions", {
         ...at(key),
-        body: { based_on: basedOn, origin: "by_hand", note, configuration },
+        body: { based_on: basedOn, origin, note, configuration },
       }),
     ),
   fileUrl: (key: string, number: number) =>

@@ -9,6 +9,15 @@ export interface History<State> {
 /** More steps than anybody takes back; older ones are forgotten. */
 const LONGEST = 200;
 
+/** The states since the last one that fits, itself left out: what was done since it was saved. */
+export function since<State>(
+  { past, now }: History<State>,
+  isSaved: (state: State) => boolean,
+): readonly State[] {
+  const states = [...past, now];
+  return states.slice(states.findLastIndex(isSaved) + 1);
+}
+
 export const begun = <State>(now: State): History<State> => ({ past: [], now, future: [] });
 
 /** Reach a new state; what had been undone can no longer be redone. */

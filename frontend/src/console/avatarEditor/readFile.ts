@@ -14,22 +14,27 @@ export async function readAvatarFile(
   file: File,
   { t, language }: ReturnType<typeof useTexts>,
 ): Promise<ReadFile> {
-  const refused = (remedy: string) =>
+  const refused = (remedy: string, sentences: readonly string[] = []) =>
     new ApiError(422, {
       code: "invalid_config",
       message: t("avatars.import.refused", { name: shortened(file.name) }),
       remedy,
+      details: sentences.map((message) => ({ message })),
     });
   if (file.size > MOST_BYTES) {
     const sizes = { size: bytes(file.size, language), most: bytes(MOST_BYTES, language) };
     throw refused(t("avatars.import.tooLarge", sizes));
   }
-  const { ok, configuration, problems } = await avatars.check(await file.text());
+  const text = await file.text();
+  const { ok, configuration, problems } = await avatars.check(text);
   if (ok && configuration) return { name: shortened(file.name), configuration };
-  const told = problems.slice(0, MOST_PROBLEMS).map((one) => sentence(one, t));
+  // Of a file in one line, the line says nothing.
+  const told = problems
+    .slice(0, MOST_PROBLEMS)
+    .map((one) => sentence(text.trim().includes("\n") ? one : { ...one, line: null }, t));
   const more = problems.length - told.length;
   if (more > 0) told.push(t("avatars.import.more", { count: more }));
-  throw refused(told.join(" "));
+  throw refused("", told);
 }
 
 function sentence({ line, path, message, remedy }: Problem, t: ReturnType<typeof useTexts>["t"]) {

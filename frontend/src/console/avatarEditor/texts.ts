@@ -17,6 +17,7 @@ export const avatarsEn = {
   "avatars.version": "Version {{number}}",
   "avatars.origin.shipped": "comes with Reembody",
   "avatars.origin.tuned": "tuned",
+  "avatars.origin.copied": "unchanged copy of {{title}}",
   "avatars.origin.by_hand": "edited by hand",
   "avatars.origin.loaded": "from a file",
   "avatars.opened": "Opened",
@@ -27,6 +28,15 @@ export const avatarsEn = {
   "avatars.hash": "Content hash: {{hash}}",
   "avatars.missing": "{{title}} has no version {{version}}.",
   "avatars.missing.instead": "Version {{number}}, the newest, is shown instead.",
+  "avatars.toTable": "Skip to the tabs and the table",
+  "avatars.did.damping": "Damping that fits the stiffness",
+  "avatars.damping.one":
+    "{{name}}: its stiffness changed and its damping did not. With {{value}} it is damped as the saved version is (critically, if that is).",
+  "avatars.damping.several":
+    "The stiffness of {{count}} axes changed and their damping did not. Damping that goes with the root of the stiffness leaves them damped as in the saved version (critically, if that is).",
+  "avatars.damping.why": "With too much a joint creeps, with too little it swings.",
+  "avatars.damping.set": "Set the damping that fits",
+  "avatars.damping.instead": "To let a limb give way to pushes, use instead, under Body:",
   "avatars.undo": "Undo",
   "avatars.redo": "Redo",
   "avatars.mirror": "Mirror",
@@ -314,6 +324,10 @@ export const avatarsEn = {
   "avatars.note.whole": "Whole note",
   "avatars.basedOn": "your work started here",
   "avatars.compare": "Compare",
+  "avatars.compare.with": "Compare version {{number}} with",
+  "avatars.compare.difference": "Difference",
+  "avatars.compare.count_one": "{{count}} value differs.",
+  "avatars.compare.count_other": "{{count}} values differ.",
   "avatars.load": "Load",
   "avatars.open": "Open",
   "avatars.open.version": "Open version {{number}}",
@@ -339,6 +353,7 @@ export const avatarsEn = {
     "Your work has {{count}} unsaved change, which the file does not keep.",
   "avatars.import.unsaved_other":
     "Your work has {{count}} unsaved changes, which the file does not keep.",
+  "avatars.import.same": "The file holds what you are working on: there is nothing to replace.",
   "avatars.import.inFile": "In the file",
   "avatars.import.refused": "The file {{name}} cannot be used, so nothing was changed",
   "avatars.import.tooLarge":
@@ -392,6 +407,7 @@ export const avatarsDe: Readonly<Record<keyof typeof avatarsEn, string>> = {
   "avatars.version": "Version {{number}}",
   "avatars.origin.shipped": "mit Reembody geliefert",
   "avatars.origin.tuned": "eingestellt",
+  "avatars.origin.copied": "unveränderte Kopie von {{title}}",
   "avatars.origin.by_hand": "von Hand bearbeitet",
   "avatars.origin.loaded": "aus einer Datei",
   "avatars.opened": "Geöffnet",
@@ -402,6 +418,16 @@ export const avatarsDe: Readonly<Record<keyof typeof avatarsEn, string>> = {
   "avatars.hash": "Inhaltshash: {{hash}}",
   "avatars.missing": "{{title}} hat keine Version {{version}}.",
   "avatars.missing.instead": "Stattdessen steht hier Version {{number}}, die neueste.",
+  "avatars.toTable": "Zu den Tabs und der Tabelle springen",
+  "avatars.did.damping": "Dämpfung passend zur Steifigkeit",
+  "avatars.damping.one":
+    "{{name}}: Die Steifigkeit wurde geändert, die Dämpfung nicht. Mit {{value}} ist die Achse gedämpft wie in der gespeicherten Version (kritisch, wenn jene es ist).",
+  "avatars.damping.several":
+    "Die Steifigkeit von {{count}} Achsen wurde geändert, ihre Dämpfung nicht. Wächst sie mit der Wurzel der Steifigkeit, bleiben sie gedämpft wie in der gespeicherten Version (kritisch, wenn jene es ist).",
+  "avatars.damping.why": "Mit zu viel kriecht ein Gelenk, mit zu wenig schwingt es.",
+  "avatars.damping.set": "Passende Dämpfung setzen",
+  "avatars.damping.instead":
+    "Damit Gliedmaßen bei Stößen nachgeben, nehmen Sie stattdessen unter Körper:",
   "avatars.undo": "Rückgängig",
   "avatars.redo": "Wiederholen",
   "avatars.mirror": "Spiegeln",
@@ -692,6 +718,10 @@ export const avatarsDe: Readonly<Record<keyof typeof avatarsEn, string>> = {
   "avatars.note.whole": "Ganze Notiz",
   "avatars.basedOn": "Ihre Arbeit begann hier",
   "avatars.compare": "Vergleichen",
+  "avatars.compare.with": "Version {{number}} vergleichen mit",
+  "avatars.compare.difference": "Unterschied",
+  "avatars.compare.count_one": "{{count}} Wert ist verschieden.",
+  "avatars.compare.count_other": "{{count}} Werte sind verschieden.",
   "avatars.load": "Laden",
   "avatars.open": "Öffnen",
   "avatars.open.version": "Version {{number}} öffnen",
@@ -718,6 +748,7 @@ export const avatarsDe: Readonly<Record<keyof typeof avatarsEn, string>> = {
     "Ihre Arbeit hat {{count}} ungespeicherte Änderung, die die Datei nicht behält.",
   "avatars.import.unsaved_other":
     "Ihre Arbeit hat {{count}} ungespeicherte Änderungen, die die Datei nicht behält.",
+  "avatars.import.same": "Die Datei enthält, woran Sie arbeiten: Es gibt nichts zu ersetzen.",
   "avatars.import.inFile": "In der Datei",
   "avatars.import.refused": "Die Datei {{name}} ist nicht verwendbar, daher wurde nichts geändert",
   "avatars.import.tooLarge":

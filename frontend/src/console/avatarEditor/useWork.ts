@@ -11,10 +11,11 @@ import {
   type AvatarVersionDetail,
   avatars,
   type JointView,
+  type Made,
   type Operation,
 } from "./api";
 import type { AvatarFile } from "./axes";
-import { begun, type History, reached, redone, undone } from "./history";
+import { begun, type History, reached, redone, since, undone } from "./history";
 
 /** One state of the work, as the server answered it. */
 export interface WorkState {
@@ -23,6 +24,8 @@ export interface WorkState {
   readonly joints: Readonly<Record<string, JointView>>;
   /** What led here, in words. */
   readonly label: string;
+  /** How its values were found; by hand where nothing is said. */
+  readonly made?: Made | undefined;
   /** The values that led here changed. */
   readonly changed: AvatarEdited["changed"];
 }
@@ -41,7 +44,9 @@ export interface Work extends WorkState {
   readonly undo: () => void;
   readonly redo: () => void;
   /** Apply operations to the newest state; false if one of them cannot be made. */
-  readonly edit: (operations: readonly Operation[], label: string) => Promise<boolean>;
+  readonly edit: (operations: readonly Operation[], label: string, made?: Made) => Promise<boolean>;
+  /** How everything that was done since a saved content was made: by hand if in several ways. */
+  readonly madeSince: (savedHash: string) => Made;
   /** Go to a saved version, and make the edit there; both can be undone. */
   readonly editFrom: (
     version: AvatarVersionDetail,
@@ -95,9 +100,14 @@ export function useWork(first: WorkState): Work {
     [queries],
   );
   const apply = useCallback(
-    (from: WorkState | null, operations: readonly Operation[], label: string): Promise<boolean> => {
+    (
+      from: WorkState | null,
+      operations: readonly Operation[],
+      label: string,
+      made?: Made,
+    ): Promise<boolean> => {
       // One after the other: an edit starts from what the one before it has made.
-      const made = queue.current.then(async () => {
+      const done = queue.current.then(async () => {
         try {
           const start = from === null ? newest.current : reached(newest.current, from);
           const { configuration, contentHash } = start.now;
@@ -107,7 +117,7 @@ export function useWork(first: WorkState): Work {
           if (edited.problems.length > 0) return false;
           const isSame = edited.content_hash === contentHash;
           if (!isSame || from !== null) {
-            put(isSame ? start : reached(start, stateOf(edited, label)));
+            put(isSame ? start : reached(start, { ...stateOf(edited, label), made }));
           }
           return true;
         } catch (failure) {
@@ -115,15 +125,16 @@ export function useWork(first: WorkState): Work {
           return false;
         }
       });
-      queue.current = made;
+      queue.current = done;
       setWaiting((count) => count + 1);
-      void made.finally(() => setWaiting((count) => count - 1));
-      return made;
+      void done.finally(() => setWaiting((count) => count - 1));
+      return done;
     },
     [put, fail],
   );
   const edit = useCallback(
-    (operations: readonly Operation[], label: string) => apply(null, operations, label),
+    (operations: readonly Operation[], label: string, made?: Made) =>
+      apply(null, operations, label, made),
     [apply],
   );
   const move = (to: (from: History<WorkState>) => History<WorkState>) => {
@@ -145,6 +156,12 @@ export function useWork(first: WorkState): Work {
     edit,
     editFrom: (version, operations, label) =>
       apply(stateOfVersion(version, label), operations, label),
+    madeSince: (savedHash) => {
+      const steps = since(history, ({ contentHash }) => contentHash === savedHash);
+      const ways = new Set(steps.map(({ made = "by_hand" }) => made));
+      const [only = "by_hand"] = ways;
+      return ways.size === 1 ? only : "by_hand";
+    },
     fail,
     dismiss,
   };

@@ -1,8 +1,9 @@
 /** How the body follows a movement with the gains before and with the accepted ones. */
-import { Anchor, Button, SegmentedControl, Select } from "@mantine/core";
+import { Anchor, Button, Loader, SegmentedControl, Select } from "@mantine/core";
+import { useInterval } from "@mantine/hooks";
 import { decimals } from "@shared/format";
 import { useMutation, useQuery } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import { type JSX, useEffect, useRef, useState } from "react";
 import { Link } from "wouter";
 import { axisName } from "../../avatarChanges/axes";
 import { groupName } from "../../avatarChanges/words";
@@ -11,7 +12,9 @@ import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import classes from "../Editor.module.css";
 import { byGroup } from "./choice";
-import { DIGITS, PairsTable } from "./PairsTable";
+import { DIGITS } from "./figures";
+import { PairsTable } from "./PairsTable";
+import own from "./Tuning.module.css";
 import { type Comparison, type Tuning, tunings } from "./tunings";
 
 const WALK = "walk";
@@ -26,10 +29,22 @@ export function CompareOn({ tuning, names }: CompareOnProps): JSX.Element {
   const { t, language } = useTexts();
   const captures = useQuery(capturesQuery);
   const [chosen, setChosen] = useState(WALK);
+  const start = useRef<HTMLButtonElement>(null);
+  const asking = useRef<AbortController | null>(null);
   const compare = useMutation({
-    mutationFn: ({ accepted, capture }: Asked) =>
-      tunings.compare(tuning.id, accepted, capture === WALK ? null : capture),
+    mutationFn: ({ accepted, capture }: Asked) => {
+      asking.current = new AbortController();
+      const { signal } = asking.current;
+      return tunings.compare(tuning.id, accepted, capture === WALK ? null : capture, signal);
+    },
   });
+  // Whoever leaves the page does not wait for it.
+  useEffect(() => () => asking.current?.abort(), []);
+  const cancel = () => {
+    asking.current?.abort();
+    compare.reset();
+    start.current?.focus();
+  };
   const listed = captures.data?.captures ?? [];
   const titles = new Map(listed.map(({ id, title }) => [id, title]));
   const asked = compare.variables;
@@ -57,11 +72,14 @@ export function CompareOn({ tuning, names }: CompareOnProps): JSX.Element {
           size="xs"
           variant="default"
           disabled={names.length === 0}
-          loading={compare.isPending}
-          onClick={() => compare.mutate({ accepted: names, capture: chosen })}
+          ref={start}
+          {...(compare.isPending ? { "data-disabled": true } : {})}
+          aria-disabled={compare.isPending}
+          onClick={() => !compare.isPending && compare.mutate({ accepted: names, capture: chosen })}
         >
           {t("avatars.compareOn.do")}
         </Button>
+        {compare.isPending && <Waiting onCancel={cancel} />}
         {names.length === 0 && (
           <span className={classes.soft}>{t("avatars.compareOn.nothing")}</span>
         )}
@@ -94,6 +112,30 @@ export function CompareOn({ tuning, names }: CompareOnProps): JSX.Element {
         </>
       )}
     </section>
+  );
+}
+
+/** How long it has taken so far; the server simulates both bodies, which can take a minute. */
+function Waiting({ onCancel }: { readonly onCancel: () => void }): JSX.Element {
+  const { t } = useTexts();
+  const [began] = useState(() => performance.now());
+  const [passedS, setPassed] = useState(0);
+  useInterval(() => setPassed(Math.round((performance.now() - began) / 1000)), 1000, {
+    autoInvoke: true,
+  });
+  return (
+    <>
+      <span className={`${classes.soft} ${own.waiting} numbers`}>
+        <Loader size={14} />
+        {t("avatars.compareOn.waiting", { seconds: passedS })}
+      </span>
+      <span role="status" className="visually-hidden">
+        {t("avatars.compareOn.simulates")}
+      </span>
+      <Button size="xs" variant="subtle" color="gray" onClick={onCancel}>
+        {t("action.cancel")}
+      </Button>
+    </>
   );
 }
 

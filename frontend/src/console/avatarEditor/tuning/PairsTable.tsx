@@ -3,10 +3,8 @@ import { decimals } from "@shared/format";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import classes from "../Editor.module.css";
+import { DIGITS, differenceInWords } from "./figures";
 import own from "./Tuning.module.css";
-
-/** The decimals of every figure, so that they stand under each other. */
-export const DIGITS = 2;
 
 type Pair = readonly [before: number | undefined, after: number | undefined];
 
@@ -60,7 +58,7 @@ export function PairsTable({ label, who, figures, rows }: PairsTableProps): JSX.
               {pairs.map(([old, next], pair) =>
                 [old, next, differenceOf(old, next)].map((value, at) => (
                   <td key={`${figures[pair]?.[0]} ${columns[at]}`} className={placeOf(at)}>
-                    {figure(value)}
+                    {at === 2 ? differenceInWords(value, language) : figure(value)}
                   </td>
                 )),
               )}

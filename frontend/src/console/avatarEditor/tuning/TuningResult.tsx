@@ -23,7 +23,7 @@ import {
   toTake,
   withGainsOf,
 } from "./choice";
-import { DIGITS } from "./PairsTable";
+import { DIGITS } from "./figures";
 import type { TuningPanelProps } from "./props";
 import own from "./Tuning.module.css";
 import { TuningCurves } from "./TuningCurves";
@@ -119,7 +119,7 @@ function TakeOver({ tuning, choices, configuration, edit, isReadOnly }: TuningRe
   const change = useMutation({
     mutationFn: (when: "before" | "after") =>
       when === "after"
-        ? edit(gainsOf(take, when), t("avatars.did.tuned", { count: take.length }))
+        ? edit(gainsOf(take, when), t("avatars.did.tuned", { count: take.length }), "tuned")
         : edit(gainsOf(back, when), t("avatars.did.tunedBack", { count: back.length })),
   });
   if (isReadOnly) return null;

@@ -1,6 +1,7 @@
 /** What the tuning panel and its parts are given by the editor. */
-import type { AvatarVersionDetail, Operation } from "../api";
+import type { AvatarVersionDetail } from "../api";
 import type { AvatarFile } from "../axes";
+import type { Work } from "../useWork";
 
 export interface TuningPanelProps {
   readonly avatarKey: string;
@@ -10,6 +11,6 @@ export interface TuningPanelProps {
   readonly contentHash: string;
   readonly chosen: string | null;
   readonly selected: ReadonlySet<string>;
-  readonly edit: (operations: readonly Operation[], label: string) => Promise<boolean>;
+  readonly edit: Work["edit"];
   readonly isReadOnly: boolean;
 }

@@ -53,7 +53,7 @@ export const tuningEn = {
   "avatars.curve.step": "Step response",
   "avatars.curve.relay": "Relay experiment",
   "avatars.compareOn": "Compare on a movement",
-  "avatars.compareOn.walk": "Generated walk (nobody’s)",
+  "avatars.compareOn.walk": "Generated walk (not recorded)",
   "avatars.compareOn.where": "Where",
   "avatars.compareOn.empty": "In an empty space",
   "avatars.compareOn.floor": "On a floor",
@@ -91,6 +91,9 @@ export const tuningEn = {
   "avatars.tuning.differs.tuned": "When tuned",
   "avatars.tuning.differs.work": "Your work",
   "avatars.compareOn.do": "Compare before and after",
+  "avatars.compareOn.waiting":
+    "{{seconds}} s: simulating both bodies, in an empty space and on a floor; up to a minute or two",
+  "avatars.compareOn.simulates": "The server simulates the body before and after.",
   "avatars.compareOn.nothing": "Accept an axis to compare.",
   "avatars.compareOn.none":
     "The lab has no capture with a skeleton yet, so only the generated walk can be chosen.",
@@ -164,7 +167,7 @@ export const tuningDe: Readonly<Record<keyof typeof tuningEn, string>> = {
   "avatars.curve.step": "Sprungantwort",
   "avatars.curve.relay": "Relaisversuch",
   "avatars.compareOn": "An einer Bewegung vergleichen",
-  "avatars.compareOn.walk": "Erzeugter Gang (von niemandem)",
+  "avatars.compareOn.walk": "Erzeugter Gang (nicht aufgezeichnet)",
   "avatars.compareOn.where": "Wo",
   "avatars.compareOn.empty": "Im leeren Raum",
   "avatars.compareOn.floor": "Auf einem Boden",
@@ -204,6 +207,9 @@ export const tuningDe: Readonly<Record<keyof typeof tuningEn, string>> = {
   "avatars.tuning.differs.tuned": "Beim Einstellen",
   "avatars.tuning.differs.work": "Ihre Arbeit",
   "avatars.compareOn.do": "Vorher und nachher vergleichen",
+  "avatars.compareOn.waiting":
+    "{{seconds}} s: Beide Körper werden simuliert, im leeren Raum und auf einem Boden; bis zu ein, zwei Minuten",
+  "avatars.compareOn.simulates": "Der Server simuliert den Körper vorher und nachher.",
   "avatars.compareOn.nothing": "Nehmen Sie eine Achse an, um zu vergleichen.",
   "avatars.compareOn.none":
     "Das Labor hat noch keine Aufnahme mit Skelett, daher gibt es nur den erzeugten Gang.",

@@ -37,11 +37,17 @@ export const tunings = {
     answer<Schemas["AcceptedConfiguration"]>(
       server.POST(`${PATH}/configuration`, { ...at(id), body: { accepted } }),
     ),
-  compare: (id: string, accepted: readonly string[], captureId: string | null) =>
+  compare: (
+    id: string,
+    accepted: readonly string[],
+    captureId: string | null,
+    signal?: AbortSignal,
+  ) =>
     answer<Comparison>(
       server.POST(`${PATH}/comparison`, {
         ...at(id),
         body: { accepted, capture_id: captureId, longest_s: 20 },
+        ...(signal === undefined ? {} : { signal }),
       }),
     ),
 };
