@@ -91,10 +91,12 @@ def _on_step(value: int, scale: dict[str, Any]) -> int:
 
 def _answer(item: dict[str, Any], person: Person, rng: np.random.Generator) -> Any:
     own = {
-        "handedness": person.handedness,
-        "footedness": person.footedness,
-        "age": person.age,
-        "height_cm": round(person.stature_m * 100),
+        "handedness": person.build.handedness,
+        "footedness": person.build.footedness,
+        "age": person.build.age,
+        "height_cm": round(person.build.stature_m * 100),
+        "weight_kg": round(person.build.mass_kg),
+        "sex": person.build.sex,
     }
     if item["key"] in own:
         return own[item["key"]]

@@ -3,8 +3,7 @@
 import asyncio
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from typing import Protocol
+from typing import Protocol, cast
 
 import mujoco
 import numpy as np
@@ -30,9 +29,9 @@ from app.science.skeleton import (
     JOINT_COUNT,
     JOINT_INDEX,
     JOINT_NAMES,
-    PARENTS,
     Pose,
     Skeleton,
+    WorldPose,
     body_part_segments,
     build_skeleton,
     forward_kinematics,
@@ -81,10 +80,10 @@ class RemoteAvatar(Protocol):
         `fingers`: the participant's finger parts (30, 4), given with every frame or with none.
         """
 
-    def beside(self, own: Skeleton, pose: Pose, hand: str) -> Vector:
-        """Return the vector from the avatar's finger tip to that of the participant, in a pose.
+    def place_of(self, effector: str) -> Vector:
+        """Return where a limb is seen at the last frame: a finger tip of a hand, or an ankle.
 
-        Of the avatar that follows at once, and that nothing stops.
+        `effector`: a hand or a foot, as a goal names it.
         """
 
     def touches(self) -> tuple[Bools, Bools]:
@@ -101,6 +100,7 @@ class DelayedCopy:
         self._skeleton, self._delay = skeleton, DelayBuffer(0.0)
         self._surfaces: SurfaceArrays | None = None
         self._pose: Pose | None = None
+        self._posed: WorldPose | None = None
         self.fingers: FloatArray | None = None
         self._hands = FingerCapsules(skeleton) if with_fingers else None
 
@@ -125,19 +125,33 @@ class DelayedCopy:
         """Return the current position of the hips with the delayed rotations of the joints."""
         whole = pose.rotations if fingers is None else np.concatenate((pose.rotations, fingers))
         delayed = self._delay.push(t_s, whole)
-        self._pose = Pose(pose.root_position_m, delayed[:JOINT_COUNT])
+        self._pose, self._posed = Pose(pose.root_position_m, delayed[:JOINT_COUNT]), None
         self.fingers = None if fingers is None else delayed[JOINT_COUNT:]
         return self._pose
 
-    def beside(self, own: Skeleton, pose: Pose, hand: str) -> Vector:  # noqa: ARG002 - as any avatar
-        """Return zero: a copy has the participant's own lengths."""
-        return (0.0, 0.0, 0.0)
+    def place_of(self, effector: str) -> Vector:
+        """Return where the delayed limb is at the last frame."""
+        world, at = self._world(), JOINT_INDEX[effector]
+        place = world.positions_m[at]
+        if effector.endswith("Hand"):
+            place = place + rotate(world.rotations[at], self._skeleton.ends_m[at])
+        return cast("Vector", tuple(place.tolist()))
+
+    def _world(self) -> WorldPose:
+        """Return the joints of the last frame in the world, computed once per frame."""
+        if self._posed is None:
+            if self._pose is None:
+                raise RuntimeError("there is no frame yet")
+            self._posed = forward_kinematics(
+                self._skeleton, self._pose.root_position_m, self._pose.rotations
+            )
+        return self._posed
 
     def touches(self) -> tuple[Bools, Bools]:
         """Return touches, determined by the distances between the body's capsules and the boxes."""
         if self._surfaces is None or self._pose is None:
             return no_touches(self.parts)
-        world = forward_kinematics(self._skeleton, self._pose.root_position_m, self._pose.rotations)
+        world = self._world()
         body = body_part_segments(self._skeleton, world)
         axes_m, radii_m = body.axes_m, body.radii_m
         if self._hands is not None and self.fingers is not None:
@@ -221,7 +235,7 @@ class PhysicsBody:
         self._began_s: float | None = None
         self.fingers: FloatArray | None = None
         self._with_fingers = with_fingers
-        self._places_m = _t_pose_of(self.avatar.model)
+        self._limbs = _limbs_of(self.avatar.model)
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -265,29 +279,12 @@ class PhysicsBody:
             self.fingers = self.avatar.finger_rotations()
         return Pose(followed.state.root_position_m, followed.state.rotations)
 
-    def beside(self, own: Skeleton, pose: Pose, hand: str) -> Vector:
-        """Return the vector from this body's finger tip to the participant's, in a pose."""
-        world = forward_kinematics(own, pose.root_position_m, pose.rotations)
-        at = JOINT_INDEX[hand]
-        tip_m = world.positions_m[at] + rotate(world.rotations[at], own.ends_m[at])
-        x, y, z = tip_m - self._tip_m(pose, world.rotations, hand)
-        return (float(x), float(y), float(z))
-
-    def _tip_m(self, pose: Pose, rotations: FloatArray, hand: str) -> FloatArray:
-        """Return where the finger tip is if every part takes the participant's rotation (22, 4)."""
-        places, chain = self._places_m, [hand]
-        while chain[-1] != JOINT_NAMES[0]:
-            chain.append(JOINT_NAMES[PARENTS[JOINT_INDEX[chain[-1]]]])
-        present = [part for part in reversed(chain) if part in places]
-        tip_m = self._hips_scale * pose.root_position_m
-        for part, following in pairwise(present):
-            offset = places[following] - places[part]
-            tip_m = tip_m + rotate(rotations[JOINT_INDEX[part]], offset)
-        side = hand.removesuffix("Hand")
-        end = places.get(f"{side}MiddleDistal")
-        if end is None or hand not in places:
-            return tip_m
-        return tip_m + rotate(rotations[JOINT_INDEX[hand]], _PAST_DISTAL * (end - places[hand]))
+    def place_of(self, effector: str) -> Vector:
+        """Return where the simulated limb is at the last frame."""
+        limb, tip_m = self._limbs[effector]
+        data = self.avatar.data
+        place = data.xpos[limb] + data.xmat[limb].reshape(3, 3) @ tip_m
+        return cast("Vector", tuple(place.tolist()))
 
     def touches(self) -> tuple[Bools, Bools]:
         """Return touches, determined from the contacts of the simulation."""
@@ -296,6 +293,24 @@ class PhysicsBody:
 
 _PAST_DISTAL = 1.15
 """From the wrist to the finger tip, over the distance to the last joint of the middle finger."""
+_WITHOUT_FINGERS_M = 0.18
+"""From the wrist to the finger tip of a hand that is modelled without fingers."""
+
+
+def _limbs_of(model: mujoco.MjModel) -> dict[str, tuple[int, FloatArray]]:
+    """Return, by hand and foot, its body and the place of the finger tip or ankle in its frame."""
+    places = _t_pose_of(model)
+    limbs: dict[str, tuple[int, FloatArray]] = {}
+    for side, outwards in (("Left", -1.0), ("Right", 1.0)):
+        hand, foot = f"{side}Hand", f"{side}Foot"
+        if hand in places:
+            end = places.get(f"{side}MiddleDistal")
+            straight = np.array([outwards * _WITHOUT_FINGERS_M, 0.0, 0.0])
+            tip_m = straight if end is None else _PAST_DISTAL * (end - places[hand])
+            limbs[hand] = model.body(hand).id, tip_m
+        if foot in places:
+            limbs[foot] = model.body(foot).id, np.zeros(3)
+    return limbs
 
 
 def _t_pose_of(model: mujoco.MjModel) -> dict[str, FloatArray]:

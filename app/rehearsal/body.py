@@ -20,9 +20,11 @@ from app.science.retargeting import (
 from app.science.rig import RigError, RigMotion
 from app.science.rotations import FloatArray
 from app.science.simulation import (
+    Build,
     LoopedFingers,
     SimulatedFingers,
     SimulatedParticipant,
+    draw_build,
     idle_movement,
     pointing,
 )
@@ -36,6 +38,7 @@ from app.science.skeleton import (
     loop,
     resample,
 )
+from app.science.tasks import Laterality
 
 FRAME_RATE_HZ = 90.0
 CROSSFADE_S, SHORTEST_CROSSFADE_S = 0.4, 0.1
@@ -111,18 +114,31 @@ def _warn_once(text: str) -> None:
 
 @dataclass(frozen=True)
 class Person:
-    """The simulated participant of a rehearsal, with properties drawn from the seed.
+    """The simulated participant of a rehearsal or a pilot, with properties drawn from the seed.
 
     `fingers`: their movement, from the capture or generated; None if they are not recorded.
     """
 
-    stature_m: float
-    handedness: str
-    footedness: str
-    age: int
+    build: Build
     skeleton: Skeleton
     participant: SimulatedParticipant
     fingers: SimulatedFingers | LoopedFingers | None = None
+
+    @property
+    def stature_m(self) -> float:
+        """The stature in metres."""
+        return self.build.stature_m
+
+    @property
+    def handedness(self) -> str:
+        """The writing hand."""
+        return self.build.handedness
+
+    @property
+    def leading_foot(self) -> Laterality:
+        """The foot that steps first: the right one if none is preferred."""
+        foot = self.build.footedness
+        return Laterality.RIGHT if foot == "both" else Laterality(foot)
 
 
 def make_person(
@@ -133,18 +149,15 @@ def make_person(
     `with_fingers`: with the fingers of the capture or, if it has none, generated ones, and an index
     finger that points.
     """
-    stature_m = float(np.clip(rng.normal(1.72, 0.09), 1.52, 1.95))
-    skeleton = build_skeleton(stature_m)
+    build = draw_build(rng)
+    skeleton = build_skeleton(build.stature_m)
     fingers: FloatArray | None = None
     if capture is None:
         movement = idle_movement(skeleton, rng)
     else:
         movement, fingers = _looped(capture, skeleton, with_fingers=with_fingers)
     person = Person(
-        stature_m=stature_m,
-        handedness="left" if rng.random() < 0.1 else "right",
-        footedness=str(rng.choice(["right", "left", "both"], p=[0.8, 0.1, 0.1])),
-        age=int(rng.integers(19, 45)),
+        build=build,
         skeleton=skeleton,
         participant=SimulatedParticipant(
             pointing(skeleton) if with_fingers else skeleton, movement, rng

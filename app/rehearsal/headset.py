@@ -19,7 +19,6 @@ from app.protocol import Tasks
 from app.rehearsal.avatars import AvatarSource, CannotChange, DelayedCopy, PhysicsBody, RemoteAvatar
 from app.rehearsal.body import FRAME_RATE_HZ, Person
 from app.rehearsal.goals import goal_of
-from app.rehearsal.sight import Sight
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
 from app.science.rotations import FloatArray
@@ -139,8 +138,6 @@ class Headset:
         if physics is None:
             self._avatar = DelayedCopy(person.skeleton, with_fingers=person.fingers is not None)
         self._run: TimedRun | None = None
-        self._pose: Pose | None = None
-        self._sight = Sight()
         self._phase_id = 0
         self._buffers = Buffers()
         self._t_pose_since_s: float | None = None
@@ -312,14 +309,13 @@ class Headset:
         if worn is None or worn is self._avatar:
             return
         worn.put_on()
-        self._avatar, self._sight = worn, Sight()
+        self._avatar = worn
         # Changes in force apply to this body, too, once it has taken the participant's pose.
         self._has_avatar_moved, self._is_unchanged = False, True
 
     def _follow_later(self, latency_s: float) -> None:
         if self._avatar is not None:
             self._avatar.set_latency(latency_s)
-        self._person.participant.set_latency(latency_s)
 
     def _show_boxes(self, layout: TaskLayout | None) -> None:
         if self._avatar is not None:
@@ -331,24 +327,17 @@ class Headset:
         t_s, run = self.t_s, self._run
         goal = None
         if isinstance(run, BoxRun):
-            foot = "right" if self._person.footedness == "both" else self._person.footedness
             solid = self._physics is not None
-            goal = goal_of(run.state, Laterality(foot), solid=solid)
-        avatar, before = self._avatar, self._pose
-        if avatar is not None and before is not None:
-            hand = "" if goal is None else goal.effector or ""
-            goal = self._sight.corrected(
-                goal,
-                t_s,
-                self._person.participant.latency_s,
-                lambda: avatar.beside(self._person.skeleton, before, hand),
-            )
-        pose = self._pose = self._person.participant.pose(t_s, goal)
+            goal = goal_of(run.state, self._person.leading_foot, solid=solid)
+        avatar = self._avatar
+        pose = self._person.participant.pose(t_s, goal)
         if avatar is None:
             return
         reaching = None if goal is None or goal.kind is not GoalKind.REACH else goal.effector
         fingers = None if self._person.fingers is None else self._person.fingers.pose(t_s, reaching)
         shown = avatar.frame(t_s, pose, fingers)
+        if goal is not None and goal.effector is not None:
+            self._person.participant.see(t_s, goal.effector, avatar.place_of(goal.effector))
         self._has_avatar_moved = True
         if recording:
             self._record(t_s, pose, shown, (fingers, avatar.fingers))

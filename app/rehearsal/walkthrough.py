@@ -34,9 +34,8 @@ SLOW: Final = MovementTraits(
     reaction_s=0.352,
     reaction_spread=0.0,
     tempo=1.28,
-    precision=1e-6,
+    precision=0.0,
     movement_spread=0.0,
-    overshoot_probability=0.0,
 )
 """Somebody who never misses, but whose reaction and pace only 5 % of drawn people exceed."""
 _SETTLING_S = 1.0
@@ -77,7 +76,6 @@ def walk_through(
     """
     skeleton, rng = build_skeleton(stature_m), np.random.default_rng(0)
     person = SimulatedParticipant(skeleton, idle_movement(skeleton, rng), rng, traits=traits)
-    person.set_latency(latency_s)
     avatar = DelayedCopy(skeleton)
     avatar.set_latency(latency_s)
     avatar.show_boxes(layout)
@@ -89,6 +87,8 @@ def walk_through(
         t_s = frame / RATE_HZ
         goal = goal_of(run.state, hand) if started else None
         avatar.frame(t_s, person.pose(t_s, goal))
+        if goal is not None and goal.effector is not None:
+            person.see(t_s, goal.effector, avatar.place_of(goal.effector))
         if not started and t_s >= _SETTLING_S:
             run.command(CommandKind.START, t_s)
             started = True

@@ -123,7 +123,8 @@ def test_a_body_with_other_arms_completes_tasks_by_sight() -> None:
     figure = shaped(width=0.6, arms=0.85)
     server, headset = play("hand", 30.0, figure=figure)
     assert [one for one in server.reports if isinstance(one, CompletionReport)]
-    off = headset._sight.seen_m
+    person = headset._person
+    off = person.participant.learned_m(f"{person.handedness.capitalize()}Hand")
     assert 0.08 < np.linalg.norm(off) < 0.3
 
 

@@ -72,7 +72,7 @@ class WornHeadset:
 
     def wear(self, person: Person, seed: int = 1, traits: Json | None = None) -> None:
         """Let this person wear the headset; without `traits` they follow from the seed."""
-        foot = "left" if person.footedness == "left" else "right"
+        foot = "left" if person.build.footedness == "left" else "right"
         wish: Json = {
             "statureM": person.stature_m,
             "spanM": SPAN_BY_STATURE * person.stature_m,

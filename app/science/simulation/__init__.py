@@ -6,6 +6,7 @@ from app.science.simulation.answers import (
     agreement,
     simulated_answers,
 )
+from app.science.simulation.build import Build, draw_build
 from app.science.simulation.finger_capsules import FingerCapsules, pointing
 from app.science.simulation.fingers import (
     GESTURES_DEG,
@@ -21,6 +22,7 @@ from app.science.simulation.traits import MovementTraits
 __all__ = [
     "GESTURES_DEG",
     "Aspect",
+    "Build",
     "FingerCapsules",
     "Goal",
     "GoalKind",
@@ -31,6 +33,7 @@ __all__ = [
     "SimulatedParticipant",
     "SimulationError",
     "agreement",
+    "draw_build",
     "gesture_angles",
     "idle_movement",
     "pointing",

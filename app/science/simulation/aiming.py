@@ -1,19 +1,19 @@
-"""Plan the path of a movement to a goal: way-points through the open side, scatter, overshoot."""
+"""Plan the path of a movement to a goal, through the open side, and the noise of doing it."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.rotations import Vector, v_add, v_dot, v_length, v_scale, v_subtract
+from app.science.rotations import Vector, v_add, v_length, v_scale, v_subtract
 from app.science.simulation.goal import Goal
 from app.science.simulation.paths import SmoothPath, path_length, path_through
 from app.science.simulation.traits import MovementTraits
 
-_WAYPOINT_SCATTER = 1.5
-_LEAST_OVERSHOOT, _MOST_OVERSHOOT = 0.04, 0.12
 _NEARLY_THERE_M = 0.02
-_CARE, _FURTHER_M = 0.5, 0.02
+_FURTHER_M = 0.02
+_ACROSS_SHARE = 0.5
+"""Ends scatter about half as widely across a movement as along it."""
 
 
 @dataclass(frozen=True)
@@ -22,13 +22,11 @@ class Aim:
 
     Attributes:
         traits: the traits of the person's movement.
-        latency_s: delay that the person sees at present, which slows movements.
         tempo: factor on movement times, larger for a foot.
         press_m: distance by which an end point lies beyond a surface, against the approach.
     """
 
     traits: MovementTraits
-    latency_s: float
     tempo: float
     press_m: float
 
@@ -43,60 +41,33 @@ class Aim:
     ) -> SmoothPath:
         """Plan a path that leaves by `way_out`, goes to the front of the goal, and enters it.
 
-        After each miss the person aims more carefully and reaches further in.
+        After each miss the person reaches further in.
         """
-        target = goal.target_m or here
-        care = _CARE**misses
-        end = self._scattered(target, goal, care, rng)
+        end = goal.target_m or here
         points = [here]
         if v_length(way_out) > _NEARLY_THERE_M:
             points.append(v_add(here, way_out))
         if v_length(goal.approach_m) > _NEARLY_THERE_M:
-            front = v_add(target, goal.approach_m)
-            points.append(self._scattered(front, goal, _WAYPOINT_SCATTER * care, rng))
+            points.append(v_add(end, goal.approach_m))
             further = misses * _FURTHER_M / v_length(goal.approach_m)
-            press = self._press(goal, rng) + further
-            end = v_subtract(end, v_scale(goal.approach_m, press))
-        lasts_s = self.tempo * self.traits.movement_time(
-            path_length([*points, end]), goal.near_m, self.latency_s, rng
-        )
-        if rng.random() < self.traits.overshoot_probability:
-            return self._overshooting(points, end, start_s, lasts_s, rng)
+            end = v_subtract(end, v_scale(goal.approach_m, self._press(goal, rng) + further))
+        way_m = path_length([*points, end])
+        lasts_s = self.tempo * self.traits.movement_time(way_m, goal.near_m, rng)
         return path_through([*points, end], start_s, lasts_s)
+
+    def noise(self, path: SmoothPath, rng: np.random.Generator) -> SmoothPath:
+        """Draw the noise of a path's movements: each ends a little beside its plan."""
+        moves = []
+        for begins, lasts, way in path.moves:
+            length = v_length(way)
+            sigma = self.traits.scatter_m(length, lasts)
+            dx, dy, dz = (_ACROSS_SHARE * sigma * rng.standard_normal(3)).tolist()
+            along = math.sqrt(1.0 - _ACROSS_SHARE**2) * sigma * float(rng.standard_normal())
+            ahead = v_scale(way, along / length) if length > 0.0 else way
+            moves.append((begins, lasts, v_add((dx, dy, dz), ahead)))
+        return SmoothPath((0.0, 0.0, 0.0), tuple(moves))
 
     def _press(self, goal: Goal, rng: np.random.Generator) -> float:
         """Return how far to press beyond the surface, as a share of the approach."""
         depth = self.press_m * (1.0 + 0.5 * abs(rng.standard_normal()))
         return depth / v_length(goal.approach_m)
-
-    def _scattered(
-        self, point: Vector, goal: Goal, factor: float, rng: np.random.Generator
-    ) -> Vector:
-        """Scatter a point across the approach, or in the floor plane if there is no approach."""
-        sigma = factor * self.traits.scatter_m(goal.near_m)
-        dx, dy, dz = (sigma * rng.standard_normal(3)).tolist()
-        axis = goal.approach_m if v_length(goal.approach_m) > 1e-9 else (0.0, 1.0, 0.0)
-        along = v_dot((dx, dy, dz), axis) / v_dot(axis, axis)
-        return v_add(point, v_subtract((dx, dy, dz), v_scale(axis, along)))
-
-    def _overshooting(
-        self,
-        points: list[Vector],
-        end: Vector,
-        start_s: float,
-        lasts_s: float,
-        rng: np.random.Generator,
-    ) -> SmoothPath:
-        """Plan a path that goes too far along its longest leg and is corrected shortly after."""
-        legs = [v_subtract(b, a) for a, b in zip(points, [*points[1:], end], strict=True)]
-        longest = max(range(len(legs)), key=lambda leg: v_length(legs[leg]))
-        share = rng.uniform(_LEAST_OVERSHOOT, _MOST_OVERSHOOT)
-        too_far = v_scale(legs[longest], share)
-        stops = [*points, end]
-        # The later points shift as well, because the person has not noticed the error yet.
-        carried = [v_add(p, too_far) if i > longest else p for i, p in enumerate(stops)]
-        path = path_through(carried, start_s, lasts_s)
-        back = v_scale(too_far, -1.0)
-        correct_s = 0.1 + 0.1 * math.sqrt(v_length(too_far))
-        correction = (path.end_s + self.traits.correction_s, correct_s, back)
-        return SmoothPath(path.start_m, (*path.moves, correction))

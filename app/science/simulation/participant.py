@@ -11,9 +11,10 @@ Its visible behaviour, frame by frame:
 - to walk somewhere it steps there facing ahead, backwards if need be. It does not see obstacles:
   to go round something, give way-points as goals, one after the other.
 
-The caller closes the loop: the task rules judge the delayed avatar, and the caller changes the goal
-accordingly. Until then the limb stays where it arrived. If a touch has no effect for longer than
-the person's patience plus the delay, the person touches once more.
+The caller closes the loop: it tells where the limb in use is seen (`see`), the task rules judge the
+delayed avatar, and the caller changes the goal accordingly. Until then the limb stays where it
+arrived. If it is seen at rest without effect for longer than the person's patience, the person
+touches once more. Nothing tells the person the latency.
 
 All randomness comes from `rng`: the same seed, times and goals give the same movement.
 """
@@ -32,6 +33,7 @@ from app.science.simulation.placement import Placement, ReachPlan
 from app.science.simulation.posture import SIDE_NAMES, Posture
 from app.science.simulation.stance import Stance
 from app.science.simulation.traits import MovementTraits, draw_traits
+from app.science.simulation.vision import LateVision
 from app.science.skeleton import JOINT_INDEX, Movement, Pose, Skeleton, forward_kinematics
 
 _TO_TASK_S = 0.8
@@ -64,12 +66,12 @@ class SimulatedParticipant:
         home_m: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         self.traits = traits or draw_traits(rng)
-        self.latency_s = 0.0
         self._rng, self._skeleton = rng, skeleton
         self._base = BaseMovement(base, rng.uniform(0.0, base.duration_s))
-        self._posture, self._stance = Posture(skeleton), Stance(skeleton, home_m)
+        self._feet_seen = LateVision(self.traits.vision_s)
+        self._posture, self._stance = Posture(skeleton), Stance(skeleton, home_m, self._feet_seen)
         self._placement = Placement(self._posture, home_m)
-        self._hands = (Hand(), Hand())
+        self._hands = tuple(Hand(LateVision(self.traits.vision_s)) for _ in SIDE_NAMES)
         self._goal: Goal | None = None
         self._time_s: float | None = None
         self._pose: Pose | None = None
@@ -87,20 +89,30 @@ class SimulatedParticipant:
         """The end point of the present goal's movement, with scatter; None before it starts."""
         if self._goal is None or self._goal.effector is None:
             return None
-        for limb in (*self._hands, self._stance):
-            if limb.goal == self._goal:
-                return limb.aimed_m
-        return None
+        for hand in self._hands:
+            if hand.goal == self._goal:
+                return hand.aimed_m
+        return self._stance.aimed_m if self._stance.goal == self._goal else None
 
-    def set_latency(self, latency_s: float) -> None:
-        """Set the delay that the person sees: delayed feedback slows movements (see `traits`).
+    def see(self, time_s: float, effector: str, place_m: Vector) -> None:
+        """Show the person where the limb of a goal is: call once per frame, after `pose`.
 
-        Raises:
-            SimulationError: below zero or not finite.
+        Args:
+            time_s: the time of the frame.
+            effector: the goal's hand or foot.
+            place_m: the finger tip, or the ankle, of the body that the person sees.
         """
-        if not 0.0 <= latency_s < float("inf"):
-            raise SimulationError(f"A latency of {latency_s} s is not valid: zero or more is.")
-        self.latency_s = latency_s
+        self._vision_of(effector).see(time_s, place_m)
+
+    def learned_m(self, hand: str) -> Vector:
+        """Return how far beside its goal the person has learned to move this hand."""
+        return self._vision_of(hand).learned_m
+
+    def _vision_of(self, effector: str) -> LateVision:
+        for side, hand in zip(SIDE_NAMES, self._hands, strict=True):
+            if effector == f"{side}Hand":
+                return hand.vision
+        return self._feet_seen
 
     def pose(self, time_s: float, goal: Goal | None) -> Pose:
         """Return the body's pose at a time, pursuing a goal; call once per frame, in order of time.
@@ -136,6 +148,9 @@ class SimulatedParticipant:
             x, y, z = self._roaming(time_s)[0]
             self._stance.place_at(self._stance.centre_m)
             self._placement.reset((x, z), y)
+        used = goal.effector if goal is not None else None
+        if used is not None and (self._goal is None or self._goal.effector != used):
+            self._vision_of(used).look_away()
         self._goal, self._plan = goal, None
         reaction_s = self.traits.reaction(self._rng)
         reaching = goal is not None and goal.kind is GoalKind.REACH
@@ -165,7 +180,8 @@ class SimulatedParticipant:
             if hand.idle:
                 continue
             tip = self._tip(side) if hand.work == 0.0 else None
-            aim = Aim(self.traits, self.latency_s, 1.0, _PRESS_M)
+            hand.vision.perceive(time_s)
+            aim = Aim(self.traits, 1.0, _PRESS_M)
             hand.follow(time_s, step_s, tip, aim, self._rng)
             if hand.work > 0.0:
                 missing = self._posture.arm(local, root, side, hand.tip_m, hand.fingers, hand.work)
@@ -182,10 +198,11 @@ class SimulatedParticipant:
     def _stand(self, local: list[Quaternion], time_s: float, step_s: float) -> Vector:
         """Place feet, hips and trunk; return the position of the hips."""
         posture, stance, placement = self._posture, self._stance, self._placement
-        aim = Aim(self.traits, self.latency_s, self.traits.foot_tempo, 0.0)
+        self._feet_seen.perceive(time_s)
+        aim = Aim(self.traits, self.traits.foot_tempo, 0.0)
         stance.follow(time_s, aim, self._rng)
         # The avatar's hips follow without delay but its arm late: wait until its arm is out.
-        if self._plan and time_s >= self._plan[0].out_s + self.latency_s:
+        if self._plan and self._plan[0].seen_out(time_s):
             placement.start(self._plan[1])
             self._plan = None
         reaching = self._goal is not None and self._goal.kind is GoalKind.REACH

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.science.rotations import Vector, v_length
+from app.science.rotations import Vector, v_add, v_length
 from app.science.simulation.aiming import Aim
 from app.science.simulation.goal import Goal, GoalKind
 from app.science.simulation.paths import SmoothPath, path_through
@@ -15,17 +15,26 @@ from app.science.simulation.steps import (
     plan_to_stand,
     plan_to_step_on,
 )
+from app.science.simulation.vision import LateVision
 from app.science.skeleton import Skeleton
 
 _LEAST_LIFT_M = 0.06
 _STEP_S, _STEP_S_PER_M = 0.35, 0.45
+_UNSEEN_S = 2.0
 _STILL: Vector = (0.0, 0.0, 0.0)
 
 
 class Stance:
-    """The positions of both feet over time: their soles, their steps, and the body above them."""
+    """The positions of both feet over time: their soles, their steps, and the body above them.
 
-    def __init__(self, skeleton: Skeleton, centre_m: tuple[float, float]) -> None:
+    A step ends beside its goal by noise. It is not corrected in the air; by `vision` the person
+    notices that the foot rests without effect, and steps once more.
+    """
+
+    def __init__(
+        self, skeleton: Skeleton, centre_m: tuple[float, float], vision: LateVision
+    ) -> None:
+        self._vision = vision
         stature = skeleton.stature_m
         self._half_width_m = 0.055 * stature
         # The ankle is a quarter of the foot's length (.152 H) from the heel: the middle is ahead.
@@ -124,7 +133,12 @@ class Stance:
         """Return whether a step has had no effect for longer than the person's patience."""
         if self.goal is None or self.goal.kind is not GoalKind.STEP or self.busy:
             return False
-        return time_s > self._since_s + aim.traits.patience_s + aim.latency_s
+        rests_s = self._since_s
+        if self._vision.sees:
+            seen_s = self._vision.still_since_s
+            longest_s = rests_s + _UNSEEN_S
+            rests_s = longest_s if seen_s is None else min(max(rests_s, seen_s), longest_s)
+        return time_s > rests_s + aim.traits.patience_s
 
     def _lift_off(self, time_s: float, aim: Aim, rng: np.random.Generator) -> None:
         foot, place = self._queue.pop(0)
@@ -135,7 +149,7 @@ class Stance:
         if goal is not None and goal.kind is GoalKind.STEP and not self._queue:
             approach = goal.approach_m if v_length(goal.approach_m) > _LEAST_LIFT_M else up
             into = Goal(goal.kind, goal.effector, place, goal.near_m, approach)
-            path = aim.path(here, up, into, time_s, rng)
+            path = _on_floor(aim, aim.path(here, up, into, time_s, rng), rng)
             self.aimed_m, self._edges[foot] = path.at(path.end_s), approach
         else:
             over = [(x, y + lift, z) for x, y, z in (here, place)]
@@ -143,6 +157,16 @@ class Stance:
             path = path_through([here, *over, place], time_s, aim.traits.tempo * lasts_s)
             self._edges[foot] = self._boxes.get(place, _STILL)
         self._swing = (foot, path)
+
+
+def _on_floor(aim: Aim, path: SmoothPath, rng: np.random.Generator) -> SmoothPath:
+    """Return the path with its noise; the sole still ends on the floor, and not below it."""
+    noise = aim.noise(path, rng)
+    moves = tuple(
+        (begins, lasts, v_add(way, (dx, 0.0, dz)))
+        for (begins, lasts, way), (_, _, (dx, _, dz)) in zip(path.moves, noise.moves, strict=True)
+    )
+    return SmoothPath(path.start_m, moves)
 
 
 def _foot_of(goal: Goal) -> int:

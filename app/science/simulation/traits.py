@@ -3,14 +3,19 @@
 | quantity | value | source |
 |---|---|---|
 | reaction time | 0.27 s, SD 0.05 between, 15 % within | assumed, order as in Luce (1986) |
-| movement time | .230 + (.169 + 1.03 lag) ID, s | MacKenzie and Ware (1993), with a mouse |
+| pace that is chosen | .230 + .169 ID, s | MacKenzie and Ware (1993), a mouse without lag |
 | index of difficulty | ID = log2(D / W + 1), W = 2 near_m | MacKenzie (1992) |
-| end point scatter | SD = W / 4.133 | effective width, MacKenzie (1992); applied across the way |
 | shape of a movement | minimum jerk | Flash and Hogan (1985) |
-| overshoot | 8 % of movements, by 4 to 12 % of the way, corrected after 0.15 s | assumed |
-| sides clipped | way-points scatter 1.5 times as widely as end points | assumed |
+| motor noise | SD of the end along the way = .012 s x mean speed | assumed, form: Schmidt (1979) |
+| its ellipse | half as wide across the way | order as in van Beers et al. (2004) |
+| delay of vision | 0.12 s | assumed, order as in Saunders and Knill (2003) |
+| correction by vision | 1 of the seen error per second | assumed |
+| learning from it | 0.06 of the seen error per second | assumed |
 | foot slower than hand | factor 1.4 | assumed |
 | tempo and precision | factors between people, log-normal, SD 15 and 25 % | assumed |
+
+The added latency is not among them: a person does not know it. It shows in what they see (`vision`)
+and in when a touch counts, and only through these in what they do.
 
 The assumed values are our own: they make rehearsals look alive and are no claim about people.
 Figures with a source were taken from the papers' well-known summaries.
@@ -22,39 +27,48 @@ from dataclasses import dataclass
 import numpy as np
 
 _FASTEST_MEAN_SPEED_M_S = 1.6
+_INTERCEPT_S, _SLOPE_S_PER_BIT = 0.230, 0.169
 
 
 @dataclass(frozen=True)
 class MovementTraits:
-    """One person's way of moving: times in seconds, SDs of log times, factors and probabilities."""
+    """One person's way of moving: times in seconds, SDs of log times, and factors.
+
+    `noise_s`: SD of a movement's end along its way, over its mean speed. `vision_s`: how late the
+    person perceives what they see. `correction_per_s`: share of the seen error that they correct
+    in a second, `learning_per_s`: that they keep for later movements. `patience_s`: how long a
+    limb rests without effect before the person tries again, `caught_s`: how long if it is seen to
+    be caught on its way.
+    """
 
     reaction_s: float = 0.27
     reaction_spread: float = 0.15
     tempo: float = 1.0
     precision: float = 1.0
     movement_spread: float = 0.08
-    overshoot_probability: float = 0.08
-    correction_s: float = 0.15
+    noise_s: float = 0.012
+    vision_s: float = 0.12
+    correction_per_s: float = 1.0
+    learning_per_s: float = 0.06
     foot_tempo: float = 1.4
     patience_s: float = 1.2
+    caught_s: float = 0.4
 
     def reaction(self, rng: np.random.Generator) -> float:
         """Draw a reaction time in seconds, never below 0.12 s."""
         drawn = self.reaction_s * math.exp(self.reaction_spread * rng.standard_normal())
         return max(0.12, drawn)
 
-    def movement_time(
-        self, distance_m: float, near_m: float, latency_s: float, rng: np.random.Generator
-    ) -> float:
-        """Draw the time of a movement over this distance to a target of this half width."""
+    def movement_time(self, distance_m: float, near_m: float, rng: np.random.Generator) -> float:
+        """Draw the planned time of a movement over this distance to this half width."""
         difficulty = math.log2(distance_m / (2.0 * near_m) + 1.0)
-        mean_s = 0.230 + (0.169 + 1.03 * latency_s) * difficulty
+        mean_s = _INTERCEPT_S + _SLOPE_S_PER_BIT * difficulty
         drawn = self.tempo * mean_s * math.exp(self.movement_spread * rng.standard_normal())
         return max(drawn, distance_m / _FASTEST_MEAN_SPEED_M_S)
 
-    def scatter_m(self, near_m: float) -> float:
-        """Return the standard deviation of end points in metres, per axis across the way."""
-        return self.precision * 2.0 * near_m / 4.133
+    def scatter_m(self, distance_m: float, duration_s: float) -> float:
+        """Return the SD of the end of a movement along its way, in metres."""
+        return self.precision * self.noise_s * distance_m / duration_s
 
 
 def draw_traits(rng: np.random.Generator) -> MovementTraits:

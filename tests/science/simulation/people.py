@@ -15,8 +15,8 @@ from app.science.skeleton import JOINT_INDEX, Movement, Pose, build_skeleton, fo
 RATE_HZ = 90.0
 SKELETON = build_skeleton(1.75)
 # Aims exactly and never retries, so that the final pose can be measured.
-EXACT = MovementTraits(precision=1e-6, overshoot_probability=0.0, patience_s=60.0)
-IMPATIENT = MovementTraits(precision=1e-6, overshoot_probability=0.0)
+EXACT = MovementTraits(precision=0.0, patience_s=60.0)
+IMPATIENT = MovementTraits(precision=0.0)
 BOXES = [(-0.375 + 0.25 * i, 1.25, -0.7) for i in range(4)]
 
 

@@ -98,13 +98,11 @@ def test_a_goal_out_of_reach_leaves_the_arm_stretched_towards_it() -> None:
 
 
 def test_invalid_requests_are_rejected() -> None:
-    """Times that go back, bases that do not loop, invalid latencies and far walks are rejected."""
+    """Times that go back, bases that do not loop and far walks are rejected."""
     person = person_of()
     person.pose(1.0, None)
     with pytest.raises(SimulationError, match="in order"):
         person.pose(0.5, None)
-    with pytest.raises(SimulationError, match="not valid"):
-        person.set_latency(-0.1)
     still = Movement(90.0, np.zeros((10, 3)), rot.identity(10, 22))
     with pytest.raises(SimulationError, match="must loop"):
         person_of(base=still)
