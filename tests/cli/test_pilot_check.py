@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from app.cli.pilot.check import _paths
 from tests.cli.invoked import Invoked
 from tests.protocol.helpers import CONFIGS, SHIPPED
 
@@ -95,6 +96,26 @@ def test_unbalanced_orders_and_hopeless_numbers_are_named(tmp_path: Path) -> Non
     said = [one["message"] for one in problems if one["path"] == "preregistration.planned_n"]
     assert "5 participants do not fill 2 orders equally" in said[0]
     assert "0.0625 at best" in said[1]
+
+
+_ROOM = """
+key: our-room
+bounds_m: [0, 0, 4, 4]
+places: {door: [0.5, 2.0], boxes: [3.5, 2.0]}
+paths: [{name: to the boxes, from: door, to: boxes}]
+obstacles:
+  - {name: wall, shape: wall, from_m: [2.0, 0.0], to_m: [2.0, END], thickness_m: 0.1}
+"""
+
+
+@pytest.mark.parametrize(("end", "found"), [("4.0", 1), ("2.5", 0)])
+def test_a_scene_without_a_path_is_named(tmp_path: Path, end: str, found: int) -> None:
+    """A wall across the room leaves no way from the door to the boxes; a shorter one does."""
+    room = tmp_path / "room.yaml"
+    room.write_text(_ROOM.replace("END", end), encoding="utf-8")
+    problems = list(_paths(room))
+    assert [one.kind for one in problems] == ["scene_without_path"] * found
+    assert all("'to the boxes' from 'door' to 'boxes'" in one.message for one in problems)
 
 
 def test_an_invalid_file_is_refused_as_everywhere(tmp_path: Path) -> None:

@@ -6,14 +6,15 @@ completes nothing, latencies that no buffer keeps, orders that are not balanced,
 cannot be significant.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import product
+from pathlib import Path
 from typing import Any, Final
 
-from app.cli.pilot.inputs import read_study
+from app.cli.pilot.inputs import StudyFile, of_file, read_study
 from app.features.results.pilot import lowest_p, most_participants
-from app.protocol import StudyProtocol, imbalances, sequences
+from app.protocol import ConfigError, StudyProtocol, imbalances, sequences
 from app.rehearsal.walkthrough import Walkthrough, walk_through
 from app.science.delay import LONGEST_DELAY_S
 from app.science.tasks import Laterality
@@ -57,11 +58,21 @@ class Checked:
     reached: tuple[Reached, ...]
 
 
-def carry_out_check(name: str, now: Callable[[str], None]) -> Checked:
-    """Check a study; raises ValueError with every problem of an invalid file, OSError."""
+def carry_out_check(name: str, scene: Path | None, now: Callable[[str], None]) -> Checked:
+    """Check a study, and the scene of its walks if one is given.
+
+    Raises ValueError with every problem of an invalid file, OSError.
+    """
     file = read_study(name)
+    return check_file(file, now, [] if scene is None else list(_paths(scene)))
+
+
+def check_file(
+    file: StudyFile, now: Callable[[str], None], of_scene: Sequence[Finding] = ()
+) -> Checked:
+    """Check a study that was read; `of_scene`: what was found in its scene."""
     study = file.study.protocol
-    findings = [*_buffers(study), *_orders(study), *_tests(study)]
+    findings = [*of_scene, *_buffers(study), *_orders(study), *_tests(study)]
     reached = list(_walks(study, now))
     findings += _reach(study, reached)
     findings += _durations(study, reached)
@@ -101,6 +112,38 @@ def check_text(checked: Checked) -> str:
         "reactions: assumed. Edges of boxes stop nobody here.",
     ]
     return "\n".join(lines)
+
+
+def _paths(file: Path) -> Iterator[Finding]:
+    """Yield the walks of a scene for which the planner of the walking model finds no path."""
+    # The planner loads the compiler, which no other check needs.
+    from app.adapters.walks import load_scene
+    from app.science.walking.planning import LazyThetaPlanner
+    from app.science.walking.scene import SceneError
+
+    try:
+        scene = load_scene(file.read_text(encoding="utf-8"))
+    except ConfigError as error:
+        raise of_file(file, error) from error
+    planner = LazyThetaPlanner(scene)
+    for at, walk in enumerate(scene.paths):
+        try:
+            planner.plan(scene.places[walk.start], scene.places[walk.goal])
+        except SceneError as error:
+            yield Finding(
+                "scene_without_path",
+                f"{file.name}: paths[{at}]",
+                f"Nobody can walk {walk.name!r} from {walk.start!r} to {walk.goal!r}: {error}",
+                f"Move the places or obstacles, or ask for less than {scene.clearance_m:g} m of "
+                "clearance_m.",
+            )
+    if not scene.paths:
+        yield Finding(
+            "scene_without_path",
+            f"{file.name}: paths",
+            "The scene asks for no walk at all.",
+            "List under paths the walks that people are asked to do, each from a place to a place.",
+        )
 
 
 def _buffers(study: StudyProtocol) -> Iterator[Finding]:

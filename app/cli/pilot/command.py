@@ -1,21 +1,75 @@
-"""Define `pilot power`, `merge` and `check`: parse options, run, print the results."""
+"""Define `pilot STUDY`, `power`, `merge` and `check`: parse options, run, print the results."""
 
 import json
 import os
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+import typer.core
 
 from app.cli.errors import INCOMPLETE, reported
 from app.cli.progress import Activity
 
+
+class _StudyOrCommand(typer.core.TyperGroup):
+    """A group in which a first word that names no command is the study of the command `cohort`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Put the command in front of a study; `ctx` is of the Click that Typer brings along."""
+        if args and not args[0].startswith("-") and args[0] not in self.commands:
+            args = ["cohort", *args]
+        return super().parse_args(ctx, args)
+
+
 pilot = typer.Typer(
+    cls=_StudyOrCommand,
     help="Simulate a study before anybody takes part; all of it is marked simulated.",
     no_args_is_help=True,
 )
 _Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+
+
+@pilot.command()
+def cohort(
+    study: Annotated[str, typer.Argument(help="Study file, or the name of a shipped one.")],
+    participants: Annotated[int, typer.Option(help="How many people are simulated.")] = 12,
+    assumptions: Annotated[
+        Path | None, typer.Option(help="File of assumptions; else the product's for the study.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of all random draws.")] = 1,
+    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
+    shard: Annotated[
+        str | None, typer.Option(help="Simulate one part of several only, as in 2/3.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Record every visit in this file, and continue it.")
+    ] = None,
+    avatar: Annotated[
+        str | None,
+        typer.Option(help="physics or delayed_copy, which is faster; else as the study has it."),
+    ] = None,
+    as_json: _Json = False,
+) -> None:
+    """Simulate whole visits: reach, completions, contacts, length, storage and power."""
+    from app.cli.pilot.cohort import CohortOrder, carry_out_cohort
+    from app.cli.pilot.cohort_report import full_report, report_json, report_text
+    from app.cli.pilot.inputs import read_avatar, read_shard
+
+    with reported(ValueError, OSError), Activity(f"simulating {study}: reading it") as now:
+        order = CohortOrder(
+            study=study,
+            participants=participants,
+            seed=seed,
+            workers=workers,
+            shard=read_shard(shard),
+            out=out,
+            avatar=read_avatar(avatar),
+        )
+        file, people = carry_out_cohort(order, now.now)
+        report = full_report(file, people, assumptions, workers, now.now)
+    print(report_json(report) if as_json else report_text(report))
 
 
 @pilot.command()
@@ -71,13 +125,16 @@ def power(
 @pilot.command()
 def check(
     study: Annotated[str, typer.Argument(help="Study file, or the name of a shipped one.")],
+    scene: Annotated[
+        Path | None, typer.Option(help="Scene file of the study's walks, to look for paths.")
+    ] = None,
     as_json: _Json = False,
 ) -> None:
     """Find what would break a study; the exit code is 1 if anything would."""
     with reported(ValueError, OSError), Activity(f"checking {study}: reading it") as now:
         from app.cli.pilot.check import carry_out_check, check_json, check_text
 
-        checked = carry_out_check(study, now.now)
+        checked = carry_out_check(study, scene, now.now)
     print(json.dumps(check_json(checked), indent=2) if as_json else check_text(checked))
     if checked.findings:
         raise typer.Exit(INCOMPLETE)
@@ -86,13 +143,27 @@ def check(
 @pilot.command()
 def merge(
     records: Annotated[list[Path], typer.Argument(help="Files that --out wrote.")],
+    study: Annotated[
+        str | None, typer.Option(help="The cohort's study, if it is not a shipped one.")
+    ] = None,
+    assumptions: Annotated[
+        Path | None, typer.Option(help="The cohort's assumptions; else the product's.")
+    ] = None,
     as_json: _Json = False,
 ) -> None:
     """Put the parts of a simulation together, wherever they were computed."""
     from app.cli.pilot import output as texts
+    from app.cli.pilot.cohort import is_cohort, merged_cohort, study_of
+    from app.cli.pilot.cohort_report import full_report, report_json, report_text
     from app.cli.pilot.run import as_json as json_of
     from app.cli.pilot.run import carry_out_merge
 
-    with reported(ValueError, OSError):
+    with reported(ValueError, OSError), Activity("putting records together") as now:
+        if is_cohort(records[0]):
+            people = merged_cohort(records)
+            file = study_of(people, study)
+            report = full_report(file, people, assumptions, 1, now.now)
+            print(report_json(report) if as_json else report_text(report))
+            return
         curve = carry_out_merge(records)
     print(json_of(curve) if as_json else texts.curve_text(curve))

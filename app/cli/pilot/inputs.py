@@ -13,6 +13,7 @@ from app.protocol import (
     load_instrument,
     load_study,
 )
+from app.rehearsal.visits import AvatarKind
 from app.resources import study_configs_dir
 from app.science.instruments import Instrument
 
@@ -45,7 +46,7 @@ def read_study(name: str) -> StudyFile:
     try:
         loaded = load_study(path.read_text(encoding="utf-8"), instruments=instruments)
     except ConfigError as error:
-        raise _of_file(path, error) from error
+        raise of_file(path, error) from error
     return StudyFile(path, loaded, instruments)
 
 
@@ -64,7 +65,13 @@ def read_assumptions(given: Path | None, study: StudyFile) -> LoadedAssumptions:
     try:
         return load_assumptions(path.read_text(encoding="utf-8"), protocol, study.instruments)
     except ConfigError as error:
-        raise _of_file(path, error) from error
+        raise of_file(path, error) from error
+
+
+def has_assumptions(given: Path | None, study: StudyFile) -> bool:
+    """Return whether there are assumptions of a study, given or the product's."""
+    key = study.study.protocol.key
+    return given is not None or (study_configs_dir() / "assumptions" / f"{key}.yaml").is_file()
 
 
 def read_counts(given: list[str]) -> tuple[int, ...]:
@@ -104,12 +111,21 @@ def _instruments(folder: Path) -> dict[str, LoadedInstrument]:
         try:
             found[path.stem] = load_instrument(path.read_text(encoding="utf-8"))
         except ConfigError as error:
-            raise _of_file(path, error) from error
+            raise of_file(path, error) from error
     return found
 
 
-def _of_file(path: Path, error: ConfigError) -> ValueError:
+def of_file(path: Path, error: ConfigError) -> ValueError:
     """Name the file in front of its problems."""
     lines = "\n".join(f"  {problem}" for problem in error.problems)
     count = len(error.problems)
     return ValueError(f"{path} has {count} problem{'s' if count > 1 else ''}:\n{lines}")
+
+
+def read_avatar(given: str | None) -> AvatarKind | None:
+    """Return the kind of avatar of an option; None if it is not given."""
+    match given:
+        case None | "physics" | "delayed_copy":
+            return given
+        case _:
+            raise ValueError(f"--avatar {given}: physics and delayed_copy are valid")

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.errors import require_folder_of
-from app.cli.pilot.inputs import read_assumptions, read_study
+from app.cli.pilot.inputs import StudyFile, read_assumptions, read_study
 from app.cli.pilot.record import FORMAT, Record, RecordFile, merged, together
 from app.features.results.pilot import (
     Chunk,
@@ -60,7 +60,11 @@ def carry_out_power(order: PowerOrder, now: Callable[[str], None]) -> Curve:
     """
     _check(order)
     require_folder_of(order.out)
-    file = read_study(order.study)
+    return power_of(read_study(order.study), order, now)
+
+
+def power_of(file: StudyFile, order: PowerOrder, now: Callable[[str], None]) -> Curve:
+    """Compute the power curve of a study that was read; raises the same errors."""
     loaded = read_assumptions(order.assumptions, file)
     protocol = file.study.protocol
     simulated = SimulatedStudy(protocol, loaded.assumptions, file.instruments)

@@ -1,0 +1,326 @@
+"""What a simulated cohort says of a study: figures, texts for forms, and the command's output."""
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from scipy import stats
+
+from app.cli.pilot.check import Finding, Reached, check_file
+from app.cli.pilot.cohort import Cohort
+from app.cli.pilot.inputs import StudyFile, has_assumptions
+from app.cli.pilot.run import Curve, PowerOrder, power_of
+from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
+from app.rehearsal.visits import PhaseOutcome, Visit
+
+MEASURES: Final = ("completions", "side_contacts", "contact_time_s", "out_of_order")
+PUBLISHED: Final = {45.0: 66.0, 125.0: 61.5, 350.0: 36.0}
+"""Motor performance in per cent by end-to-end latency in ms (Waltemate et al. 2016, ten people)."""
+_SETS: Final = 1000
+_TARGET: Final = 0.8
+_MB_PER_MINUTE: Final = 2.03
+"""Storage of a minute of both bodies at 90 Hz (docs/benchmarks.md, encoding)."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One limb at one latency: means over people, and the share who completed nothing."""
+
+    limb: str
+    latency_ms: float
+    people: int
+    completions: float
+    completions_sd: float
+    side_contacts: float
+    contact_time_s: float
+    out_of_order: float
+    walk_back_s: float
+    at_floor: float
+    share_of_lowest: float | None
+
+
+@dataclass(frozen=True)
+class Change:
+    """A measure's paired change from the lowest to the highest latency, with its t interval."""
+
+    limb: str
+    measure: str
+    people: int
+    mean: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class CohortReport:
+    """Everything that is said of a cohort.
+
+    `session_min`: the estimated length of a visit, with the mean of the walks back. `storage_mb`:
+    of one visit's recorded movement.
+    """
+
+    cohort: Cohort
+    cells: tuple[Cell, ...]
+    changes: tuple[Change, ...]
+    session_min: float
+    walk_back_min: float
+    storage_mb: float
+    reached: tuple[Reached, ...]
+    findings: tuple[Finding, ...]
+    power: Curve | None
+
+
+def full_report(
+    file: StudyFile,
+    cohort: Cohort,
+    assumptions: Path | None,
+    workers: int,
+    now: Callable[[str], None],
+) -> CohortReport:
+    """Check the study, simulate its power if anything is assumed of answers, and report.
+
+    Raises the errors of `carry_out_power`.
+    """
+    checked = check_file(file, now)
+    curve = None
+    if has_assumptions(assumptions, file):
+        order = PowerOrder(
+            study=str(file.path),
+            assumptions=assumptions,
+            participants=(),
+            seed=int(cohort.header["seed"]),
+            sets=_SETS,
+            target=_TARGET,
+            workers=workers,
+            shard=(0, 1),
+            out=None,
+        )
+        curve = power_of(file, order, now)
+    return report_on(file, cohort, checked.reached, checked.findings, curve)
+
+
+def report_on(
+    file: StudyFile,
+    cohort: Cohort,
+    reached: Sequence[Reached],
+    findings: Sequence[Finding],
+    power: Curve | None,
+) -> CohortReport:
+    """Summarise a cohort, with what a check of the study found."""
+    study = file.study.protocol
+    finished = [visit for visit in cohort.visits if visit.failure is None]
+    back_s = [sum(_walk_back_s(one) for one in visit.phases) for visit in finished]
+    back_min = float(np.mean(back_s)) / 60.0 if back_s else 0.0
+    steps = compile_plan(study, sequences(study)[0])
+    recorded_s = sum(
+        (one.preparation_s or 0.0) + (one.duration_s or 0.0) + (one.freeze_s or 0.0)
+        for one in steps
+        if one.kind in TIMED_KINDS
+    )
+    cells = tuple(_cells(finished))
+    return CohortReport(
+        cohort=cohort,
+        cells=cells,
+        changes=tuple(_changes(finished)),
+        session_min=visit_time(study, file.instruments).total + back_min,
+        walk_back_min=back_min,
+        storage_mb=(recorded_s / 60.0 + back_min) * _MB_PER_MINUTE,
+        reached=tuple(reached),
+        findings=tuple(findings),
+        power=power,
+    )
+
+
+def paragraphs(report: CohortReport) -> Mapping[str, str]:
+    """Return texts for the ethics form and the preregistration, with the figures of the report."""
+    header, curve = report.cohort.header, report.power
+    ethics = (
+        f"A visit to the study {header['study']} takes about {report.session_min:.0f} minutes, "
+        f"of which {report.walk_back_min:.1f} minutes are walks back between tasks. Before anybody "
+        f"takes part, the procedure was rehearsed with {len(report.cohort.visits)} simulated people"
+        f" (seed {header['seed']}); {_failures(report.cohort)} of these visits could not be "
+        f"completed. {_reach_sentence(report)} The movement recorded of one person takes about "
+        f"{report.storage_mb:.0f} MB. These figures come from a simulation and say nothing about "
+        "how people will feel."
+    )
+    if curve is None or not curve.points:
+        declared = (
+            "The number of participants was not derived from a simulation: nothing is assumed yet "
+            "of how people would answer."
+        )
+    else:
+        test = curve.header["test"]
+        points = "; ".join(
+            f"n = {one.n}: {one.power:.2f} [{one.low:.2f}, {one.high:.2f}], level {one.level:.3f}"
+            for one in curve.points
+        )
+        declared = (
+            f"The power of the test ({test['test']} of {test['score'] or test['measure']}, "
+            f"{test['limb']}, {test['direction']}, alpha {curve.header['alpha']:g}) was simulated "
+            f"with {curve.header['sets']} data sets for each number of participants, in the "
+            f"study's own orders and with its own exclusions, seed {curve.header['seed']}: {points}"
+            ". Bands are Clopper-Pearson intervals of 95 %. All of it follows from assumptions "
+            f"that nobody has measured in this study (SHA-256 {curve.header['assumptions_sha256']})"
+            "."
+        )
+    return {"ethics": ethics, "preregistration": declared}
+
+
+def report_json(report: CohortReport) -> str:
+    """Return the report for scripts."""
+    header, curve = report.cohort.header, report.power
+    return json.dumps(
+        {
+            "simulated": True,
+            "study": header["study"],
+            "study_sha256": header["study_sha256"],
+            "avatar": header["avatar"],
+            "participants": header["participants"],
+            "seed": header["seed"],
+            "sha256": report.cohort.sha256,
+            "real_time_factor": report.cohort.real_time_factor,
+            "unfinished": report.cohort.unfinished,
+            "failures": _failures(report.cohort),
+            "reach": [asdict(one) for one in report.reached],
+            "problems": [asdict(one) for one in report.findings],
+            "phases": [asdict(one) for one in report.cells],
+            "changes": [asdict(one) for one in report.changes],
+            "published": [
+                {"end_to_end_ms": ms, "performance_percent": share}
+                for ms, share in PUBLISHED.items()
+            ],
+            "session_min": report.session_min,
+            "walk_back_min": report.walk_back_min,
+            "storage_mb": report.storage_mb,
+            "power": [] if curve is None else [asdict(one) for one in curve.points],
+            "assumptions": [] if curve is None else curve.header["assumptions"],
+            "paragraphs": paragraphs(report),
+        },
+        indent=2,
+    )
+
+
+def report_text(report: CohortReport) -> str:
+    """Describe the report."""
+    return "\n".join(_lines(report))
+
+
+def _lines(report: CohortReport) -> Iterator[str]:
+    cohort = report.cohort
+    header = cohort.header
+    yield (
+        f"SIMULATED: {len(cohort.visits)} of {header['participants']} people in "
+        f"{header['study']}, {header['avatar']}, seed {header['seed']}"
+    )
+    yield f"sha256 {cohort.sha256}; visits that could not be completed: {_failures(cohort)}"
+    if cohort.real_time_factor is not None:
+        yield f"{cohort.real_time_factor:.1f} s of visits for each second of processor time"
+    for visit in cohort.visits:
+        if visit.failure is not None:
+            yield f"  person {visit.number}: {visit.failure}"
+    yield ""
+    yield (
+        "limb  latency  people  tasks (SD)    of lowest  sides  red, s  early  walks back, s  none"
+    )
+    for one in report.cells:
+        share = "-" if one.share_of_lowest is None else f"{100 * one.share_of_lowest:.0f} %"
+        yield (
+            f"{one.limb:4} {one.latency_ms:5.0f} ms {one.people:7d}  {one.completions:5.2f} "
+            f"({one.completions_sd:4.2f}) {share:>11} {one.side_contacts:6.1f} "
+            f"{one.contact_time_s:7.1f} {one.out_of_order:6.2f} {one.walk_back_s:14.1f} "
+            f"{100 * one.at_floor:4.0f} %"
+        )
+    shares = ", ".join(f"{share:g} % at {ms:g} ms" for ms, share in PUBLISHED.items())
+    yield f"Published, end to end (Waltemate et al. 2016, another task): {shares}."
+    if report.changes:
+        yield ""
+        yield "Paired change from the lowest to the highest latency, 95 % t interval:"
+    for change in report.changes:
+        yield (
+            f"  {change.limb} {change.measure}: {change.mean:+.2f} "
+            f"[{change.low:+.2f}, {change.high:+.2f}], n = {change.people}"
+        )
+    yield ""
+    yield _reach_sentence(report)
+    for found in report.findings:
+        yield f"  {found.path}: {found.message}"
+    for text in paragraphs(report).values():
+        yield from ("", text)
+
+
+def _failures(cohort: Cohort) -> int:
+    return sum(visit.failure is not None for visit in cohort.visits)
+
+
+def _reach_sentence(report: CohortReport) -> str:
+    missed = [one for one in report.reached if one.out_of_reach]
+    bodies = sorted({one.stature_m for one in report.reached})
+    if not bodies:
+        return "Reach was not looked at."
+    between = f"from {bodies[0]:.3f} to {bodies[-1]:.3f} m (5th percentile of women to 95th of men)"
+    if not missed:
+        return f"Every box was reached by simulated bodies {between}."
+    which = ", ".join(sorted({surface for one in missed for surface in one.out_of_reach}))
+    return f"Out of reach of simulated bodies {between}: {which}."
+
+
+def _walk_back_s(phase: PhaseOutcome) -> float:
+    return max(0.0, phase.elapsed_s - phase.active_s)
+
+
+def _cells(visits: Sequence[Visit]) -> Iterator[Cell]:
+    for limb, by_latency in _by_limb(visits).items():
+        lowest: float | None = None
+        for latency_ms in sorted(by_latency):
+            own = list(by_latency[latency_ms].values())
+            tasks = np.array([one.completions for one in own], dtype=np.float64)
+            if lowest is None:
+                lowest = float(tasks.mean())
+            yield Cell(
+                limb=limb,
+                latency_ms=latency_ms,
+                people=len(own),
+                completions=float(tasks.mean()),
+                completions_sd=float(tasks.std(ddof=1)) if len(own) > 1 else 0.0,
+                side_contacts=float(np.mean([one.side_contacts for one in own])),
+                contact_time_s=float(np.mean([one.contact_time_s for one in own])),
+                out_of_order=float(np.mean([one.out_of_order for one in own])),
+                walk_back_s=float(np.mean([_walk_back_s(one) for one in own])),
+                at_floor=float(np.mean(tasks == 0.0)),
+                share_of_lowest=float(tasks.mean()) / lowest if lowest else None,
+            )
+
+
+def _changes(visits: Sequence[Visit]) -> Iterator[Change]:
+    for limb, by_latency in _by_limb(visits).items():
+        low_ms, high_ms = min(by_latency), max(by_latency)
+        both = sorted(by_latency[low_ms].keys() & by_latency[high_ms].keys())
+        if low_ms == high_ms or len(both) < 2:
+            continue
+        for measure in MEASURES:
+            change = np.array(
+                [
+                    getattr(by_latency[high_ms][who], measure)
+                    - getattr(by_latency[low_ms][who], measure)
+                    for who in both
+                ],
+                dtype=np.float64,
+            )
+            half = float(
+                stats.t.ppf(0.975, len(both) - 1) * change.std(ddof=1) / np.sqrt(len(both))
+            )
+            mean = float(change.mean())
+            yield Change(limb, measure, len(both), mean, mean - half, mean + half)
+
+
+def _by_limb(visits: Sequence[Visit]) -> dict[str, dict[float, dict[int, PhaseOutcome]]]:
+    """Return the phases: limb -> latency -> person."""
+    found: dict[str, dict[float, dict[int, PhaseOutcome]]] = {}
+    for visit in visits:
+        for phase in visit.phases:
+            by_latency = found.setdefault(phase.limb, {})
+            by_latency.setdefault(phase.latency_ms, {})[visit.number] = phase
+    return found

@@ -1,0 +1,121 @@
+"""Tests of `reembody pilot STUDY`: same visits however they are shared out, resuming, and words."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.cli.pilot.cohort import Cohort, CohortOrder, carry_out_cohort
+from tests.cli.invoked import Invoked
+from tests.protocol.helpers import CONFIGS
+
+_COMMAND = Invoked("pilot")
+_PEOPLE = ("--participants", 3, "--seed", 5)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a hand study of two latencies with short phases and a copy as its avatar."""
+    text = (CONFIGS / "templates" / "two-latencies-hand.yaml").read_text(encoding="utf-8")
+    text = re.sub(r"duration_s: 60", "duration_s: 3", text)
+    text = re.sub(r"avatar: physics\navatar_configuration: .*", "avatar: delayed_copy", text)
+    file = tmp_path_factory.mktemp("study") / "study.yaml"
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="module")
+def whole(study: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    """Return the record and the report of the cohort, simulated in this process."""
+    record = tmp_path_factory.mktemp("whole") / "cohort.jsonl"
+    return record, _COMMAND.figures(study, *_PEOPLE, "--out", record)
+
+
+def _simulated(
+    study: Path, out: Path, *, workers: int = 1, shard: tuple[int, int] = (0, 1)
+) -> Cohort:
+    """Simulate the same cohort, or a part of it, without a report."""
+    order = CohortOrder(
+        study=str(study), participants=3, seed=5, workers=workers, shard=shard, out=out, avatar=None
+    )
+    return carry_out_cohort(order, lambda _: None)[1]
+
+
+def _without_machine(report: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in report.items() if key != "real_time_factor"}
+
+
+def test_the_same_bytes_however_it_is_shared_out(
+    study: Path, whole: tuple[Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    """Two processes write the same record, and three shards merge to the same report."""
+    record, report = whole
+    two = tmp_path / "two.jsonl"
+    _simulated(study, two, workers=2)
+    assert two.read_bytes() == record.read_bytes()
+    shards = [tmp_path / f"{part}.jsonl" for part in range(3)]
+    for part, shard in enumerate(shards):
+        assert _simulated(study, shard, shard=(part, 3)).unfinished == 2
+    merged = _COMMAND.figures("merge", *shards, "--study", study)
+    assert _without_machine(merged) == _without_machine(report)
+    assert merged["real_time_factor"] is None
+
+
+def test_a_killed_run_resumes(
+    study: Path, whole: tuple[Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    """A record that ends in the middle of a line is continued to the same bytes."""
+    record, report = whole
+    lines = record.read_text(encoding="utf-8").splitlines(keepends=True)
+    killed = tmp_path / "killed.jsonl"
+    killed.write_text("".join(lines[:3]) + lines[3][:50], encoding="utf-8")
+    again = _simulated(study, killed)
+    assert killed.read_bytes() == record.read_bytes()
+    assert again.sha256 == report["sha256"]
+
+
+def test_the_report_marks_itself_and_has_what_forms_ask_for(
+    whole: tuple[Path, dict[str, Any]],
+) -> None:
+    """The JSON says that it is simulated, whom it reached, what was done, and gives both texts."""
+    report = whole[1]
+    assert report["simulated"] is True
+    assert report["participants"] == 3
+    assert report["failures"] == 0
+    assert report["real_time_factor"] > 0.0
+    assert {one["stature_m"] for one in report["reach"]} == {1.518, 1.869}
+    assert {one["latency_ms"] for one in report["phases"]} == {0.0, 200.0}
+    assert all(one["people"] == 3 for one in report["phases"])
+    assert "simulated people (seed 5)" in report["paragraphs"]["ethics"]
+    assert "nothing is assumed yet" in report["paragraphs"]["preregistration"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--participants", 0), "1 to 10000 are valid"),
+        (("--workers", 65), "1 to 64 are valid"),
+        (("--shard", "1/3"), "--shard needs --out"),
+        (("--avatar", "robot"), "physics and delayed_copy are valid"),
+    ],
+)
+def test_unusable_input_is_refused(study: Path, arguments: tuple[object, ...], said: str) -> None:
+    """What cannot be simulated is refused, with what is valid."""
+    assert said in _COMMAND.refusal(study, *arguments)
+
+
+def test_another_cohort_is_not_continued(
+    study: Path, whole: tuple[Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    """A record of another seed is refused and left as it was; so is one of another shard."""
+    record, _ = whole
+    before = record.read_bytes()
+    said = _COMMAND.refusal(study, "--participants", 3, "--seed", 6, "--out", record)
+    assert "it differs in seed" in said
+    copy = tmp_path / "copy.jsonl"
+    copy.write_bytes(before)
+    assert "another shard" in _COMMAND.refusal(study, *_PEOPLE, "--shard", "2/2", "--out", copy)
+    assert copy.read_bytes() == before
+    assert json.loads(before.splitlines()[0])["simulated"] is True
