@@ -1,5 +1,5 @@
 /** The console's queries to the server, each with its cache key. */
-import { analysis, type FigureGroup, type Filter } from "@shared/api/analysis";
+import { analysis, type FigureGroup, type Filter, preregistrations } from "@shared/api/analysis";
 import { drafts, instruments, versions } from "@shared/api/drafts";
 import { network, sessions, studies } from "@shared/api/endpoints";
 import { demo, exports, lab, storageRoom, tryouts } from "@shared/api/housekeeping";
@@ -71,6 +71,12 @@ export const statisticsQuery = (key: string, kind: DataKind) =>
     queryKey: ["studies", key, "statistics", kind],
     queryFn: () => analysis.statistics(key, kind),
     refetchInterval: ({ state }) => (state.data?.current === false ? 1500 : false),
+  });
+
+export const preregistrationQuery = (key: string, kind: DataKind) =>
+  queryOptions({
+    queryKey: ["studies", key, "preregistration", kind],
+    queryFn: () => preregistrations.get(key, kind),
   });
 
 /** Kept for a day, so that a page whose sign-in has expired is restored with what was typed. */

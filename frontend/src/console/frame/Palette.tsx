@@ -33,7 +33,8 @@ export function Palette({ account, address, onClose }: PaletteProps): JSX.Elemen
   const { t } = useTexts();
   const [, navigate] = useLocation();
   const [query, setQuery] = useState("");
-  const combobox = useCombobox();
+  // Its list is always open: the dialog is what opens and closes.
+  const combobox = useCombobox({ opened: true });
   const entries = useEntries(account, address);
   const shown = [...found(entries, query), ...useHelpEntries(query)];
   // The first result is chosen, so that Enter alone opens it.
@@ -62,6 +63,7 @@ export function Palette({ account, address, onClose }: PaletteProps): JSX.Elemen
         <Combobox.EventsTarget>
           <TextInput
             data-autofocus
+            role="combobox"
             size="md"
             leftSection={<Icon name="search" size={18} />}
             aria-label={t("frame.search.long")}

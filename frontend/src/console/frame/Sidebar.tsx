@@ -56,7 +56,7 @@ export function Sidebar({ account, named, onSearch, onToggle }: SidebarProps): J
         <button
           type="button"
           className={classes.search}
-          aria-label={t("frame.search.long")}
+          aria-label={named ? undefined : t("frame.search.long")}
           aria-keyshortcuts="Control+K"
           onClick={onSearch}
         >

@@ -127,9 +127,6 @@ interface CardProps {
 
 function Card({ study, progress }: CardProps): JSX.Element {
   const { t, language } = useTexts();
-  const completed = progress?.completed ?? 0;
-  const planned = progress?.planned ?? 0;
-  const counts = study.session_counts;
   return (
     <Link href={`/studies/${study.key}`} className={classes.card ?? ""}>
       <div>
@@ -145,27 +142,40 @@ function Card({ study, progress }: CardProps): JSX.Element {
       </div>
       <p className={classes.about}>{study.description}</p>
       <div className={`${home.progress} numbers`}>
-        <Progress
-          value={planned === 0 ? 0 : (100 * completed) / planned}
-          aria-label={t("home.progress", { completed, planned })}
-        />
-        <div className={home.progressText}>
-          <span>
-            {t(progress?.preregistered ? "home.progress.preregistered" : "home.progress", {
-              completed,
-              planned,
-            })}
-          </span>
-          <span>
-            {(progress?.running ?? 0) > 0
-              ? t("home.progress.running", { count: progress?.running ?? 0 })
-              : t("home.others", {
-                  simulated: counts["simulated"] ?? 0,
-                  test: counts["test"] ?? 0,
-                })}
-          </span>
-        </div>
+        {progress !== undefined && (
+          <ProgressLine progress={progress} counts={study.session_counts} />
+        )}
       </div>
     </Link>
+  );
+}
+
+interface ProgressLineProps {
+  readonly progress: StudyProgress;
+  readonly counts: StudySummary["session_counts"];
+}
+
+function ProgressLine({ progress, counts }: ProgressLineProps): JSX.Element {
+  const { t } = useTexts();
+  const { completed, planned, running, preregistered } = progress;
+  const text = t(preregistered ? "home.progress.preregistered" : "home.progress", {
+    completed,
+    planned,
+  });
+  return (
+    <>
+      <Progress value={planned === 0 ? 0 : (100 * completed) / planned} aria-label={text} />
+      <div className={home.progressText}>
+        <span>{text}</span>
+        <span>
+          {running > 0
+            ? t("home.progress.running", { count: running })
+            : t("home.others", {
+                simulated: counts["simulated"] ?? 0,
+                test: counts["test"] ?? 0,
+              })}
+        </span>
+      </div>
+    </>
   );
 }

@@ -1,15 +1,16 @@
 /** The study's preregistration, its analysis, and every way in which they differ. */
 import { Button, Group, Paper, Title } from "@mantine/core";
 import { type Deviation, type Preregistration, preregistrations } from "@shared/api/analysis";
-import type { DataKind, StudyDetail } from "@shared/api/types";
+import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
-import { queryOptions, useQuery } from "@tanstack/react-query";
+import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import page from "../pages/study/StudyPage.module.css";
 import { usePermissions } from "../permissions";
+import { preregistrationQuery } from "../queries";
 import { useKind } from "../ui/chosenKind";
 import { EmptyState } from "../ui/EmptyState";
 import { KindFilter } from "../ui/KindFilter";
@@ -134,8 +135,3 @@ function DeviationText({ deviation }: { readonly deviation: Deviation }): JSX.El
 }
 
 /** The query of a study's preregistration, with its cache key. */
-const preregistrationQuery = (key: string, kind: DataKind) =>
-  queryOptions({
-    queryKey: ["studies", key, "preregistration", kind],
-    queryFn: () => preregistrations.get(key, kind),
-  });

@@ -21,15 +21,17 @@ export interface ExportWish {
   readonly studyKey: string;
   readonly kind: DataKind | "all";
   readonly sessionId?: string;
+  /** Whether every frame of movement is included, which is nearly all of the size. */
+  readonly movement?: boolean;
 }
 
 export const exports = {
   list: () => answer<readonly Export[]>(server.GET("/api/exports")),
-  order: ({ studyKey, kind, sessionId }: ExportWish) =>
+  order: ({ studyKey, kind, sessionId, movement = true }: ExportWish) =>
     answer<Export>(
       server.POST("/api/studies/{key}/exports", {
         params: { path: { key: studyKey } },
-        body: { kind, session_id: sessionId ?? null },
+        body: { kind, session_id: sessionId ?? null, movement },
       }),
     ),
   remove: (id: string) => answer<void>(server.DELETE("/api/exports/{export_id}", one(id))),

@@ -5953,6 +5953,8 @@ export interface components {
              * @enum {string}
              */
             readonly kind: "people" | "simulated" | "test" | "all";
+            /** Movement */
+            readonly movement: boolean;
             /** Remaining S */
             readonly remaining_s: number | null;
             /** Rows */
@@ -5979,6 +5981,8 @@ export interface components {
         /**
          * ExportWish
          * @description The data to export: a study's sessions of one kind, or only one session of that kind.
+         *
+         *     `movement`: also the frames of every session, which are nearly all of the size.
          */
         readonly ExportWish: {
             /**
@@ -5986,6 +5990,11 @@ export interface components {
              * @enum {string}
              */
             readonly kind: "people" | "simulated" | "test" | "all";
+            /**
+             * Movement
+             * @default true
+             */
+            readonly movement: boolean;
             /** Session Id */
             readonly session_id?: string | null;
         };

@@ -26,9 +26,11 @@ import classes from "./DashboardTab.module.css";
 import { FigureCard } from "./FigureCard";
 import { FilterBar } from "./FilterBar";
 import page from "./StudyPage.module.css";
+import { SummaryRow } from "./SummaryRow";
 
-const FIRST = "progress";
-const AFTERWARDS = ["embodiment", "answers", "tasks", "movement", "quality"] as const;
+/** What the study is about comes first; the summary row above says how far it is. */
+const FIRST = "embodiment";
+const AFTERWARDS = ["tasks", "movement", "answers", "progress", "quality"] as const;
 
 export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
@@ -52,6 +54,7 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
       <Loaded query={query}>
         {(dashboard) => (
           <>
+            <SummaryRow study={study} kind={filter.kind} counts={dashboard} />
             <FilterBar filter={filter} choices={dashboard.choices} onChange={setFilter} />
             <Banners dashboard={dashboard} />
             <Groups studyKey={study.key} filter={filter} groups={[FIRST, ...AFTERWARDS]} enabled />

@@ -22,6 +22,7 @@ const FILES = [
   "phases",
   "answers",
   "scores",
+  "wide",
   "corrections",
   "completions",
   "contacts",
@@ -83,10 +84,24 @@ function Download({ study }: { readonly study: StudyDetail }): JSX.Element {
         <Button
           leftSection={<Icon name="download" size={18} />}
           loading={order.isPending}
-          onClick={() => order.mutate({ studyKey: study.key, kind })}
+          onClick={() => order.mutate({ studyKey: study.key, kind, movement: false })}
         >
           {t("export.start")}
         </Button>
+        <Text size="sm" c="dimmed">
+          {t("export.tables.about")}
+        </Text>
+        <Button
+          variant="default"
+          leftSection={<Icon name="walk" size={18} />}
+          loading={order.isPending}
+          onClick={() => order.mutate({ studyKey: study.key, kind })}
+        >
+          {t("export.movement")}
+        </Button>
+        <Text size="sm" c="dimmed">
+          {t("export.movement.about")}
+        </Text>
         {order.isError && <Failure error={order.error} />}
         <DownloadList query={useExports(true)} studyKey={study.key} />
       </Stack>

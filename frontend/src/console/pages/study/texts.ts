@@ -5,6 +5,14 @@ const exportsEn = {
   "export.files": "What is in the archive",
   "export.download": "Download",
   "export.start": "Download (zip with CSV)",
+  "export.tables.about":
+    "All tables, the codebook, the study as it was run, and the instruments with wording and formulas. Takes seconds.",
+  "export.movement": "With every frame of movement",
+  "export.movement.about":
+    "The same, and samples of every session: tens of megabytes and a minute or more per session-hour. You see the size grow, and can cancel.",
+  "export.file.wide": "wide.csv, wide_columns.csv",
+  "export.about.wide":
+    "One row per participant who counts, one column per score, task and condition: for JASP and SPSS.",
   "export.codebook": "Codebook",
   "export.codebookLead": "Every column of every table, with its unit.",
   "export.column": "Column",
@@ -71,6 +79,14 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.files": "Was das Archiv enthält",
   "export.download": "Herunterladen",
   "export.start": "Herunterladen (Zip mit CSV)",
+  "export.tables.about":
+    "Alle Tabellen, das Codebuch, die Studie, wie sie durchgeführt wurde, und die Fragebögen mit Wortlaut und Formeln. Dauert Sekunden.",
+  "export.movement": "Mit jedem Einzelbild der Bewegung",
+  "export.movement.about":
+    "Dasselbe und die Bewegung jeder Sitzung: viele Megabyte, und eine Minute oder mehr je Stunde Sitzung. Sie sehen, wie die Datei wächst, und können abbrechen.",
+  "export.file.wide": "wide.csv, wide_columns.csv",
+  "export.about.wide":
+    "Eine Zeile je Person, die zählt, eine Spalte je Wert, Aufgabe und Bedingung: für JASP und SPSS.",
   "export.codebook": "Codebuch",
   "export.codebookLead": "Jede Spalte jeder Tabelle, mit ihrer Einheit.",
   "export.column": "Spalte",
