@@ -22,8 +22,13 @@ from app.errors import Conflict, NotDurable, NotFound
 from app.features.design.studies import create_study, study_by_key
 from app.features.people.accounts import issue_token, revoke_token
 from app.features.people.audit import record
-from app.features.record.demo.demo_study import DEMO_KEY, PEOPLE, demo_code, demo_yaml
-from app.features.record.demo.removal import remove_study
+from app.features.record.demo.demo_study import (
+    DEMO_KEY,
+    PEOPLE,
+    demo_code,
+    demo_yaml,
+    remove_study,
+)
 from app.features.record.tryout import Performance
 from app.models import Account, Participant, Study, StudySession
 from app.platform.access import Caller, add_member

@@ -116,8 +116,7 @@ function TopBar({
         onClose={drawer.close}
         size={280}
         withCloseButton={false}
-        title={undefined}
-        aria-label={t("frame.label")}
+        title={t("frame.label")}
         styles={{ body: { padding: 0, height: "100%" } }}
       >
         {children}

@@ -57,10 +57,10 @@ export function Palette({ account, address, onClose }: PaletteProps): JSX.Elemen
       centered={false}
       yOffset="12vh"
       size={620}
-      aria-label={t("frame.search.long")}
+      title={t("frame.search.long")}
     >
       <Combobox store={combobox} onOptionSubmit={choose}>
-        <Combobox.EventsTarget>
+        <Combobox.EventsTarget withExpandedAttribute>
           <TextInput
             data-autofocus
             role="combobox"

@@ -8,8 +8,14 @@ from sqlalchemy.orm import Session
 
 from app.database import Base
 from app.features.design.studies import create_study, newest_version, protocol_of, study_by_key
-from app.features.record.demo.demo_study import DEMO_KEY, PEOPLE, PHASE_S, demo_code, demo_yaml
-from app.features.record.demo.removal import remove_study
+from app.features.record.demo.demo_study import (
+    DEMO_KEY,
+    PEOPLE,
+    PHASE_S,
+    demo_code,
+    demo_yaml,
+    remove_study,
+)
 from app.features.record.demo.runner import DemoRunner
 from app.models import Account
 from app.platform.access import Caller

@@ -1,5 +1,6 @@
-"""Statistical tests of a study's measures, reported in sentences and tables."""
+"""Statistical tests of a study's measures in sentences and tables, and the values they test."""
 
 from app.features.results.analysis.questions.answers import answers_of
+from app.features.results.analysis.questions.wide import WideColumn, wide_table
 
-__all__ = ["answers_of"]
+__all__ = ["WideColumn", "answers_of", "wide_table"]

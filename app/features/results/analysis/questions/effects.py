@@ -47,4 +47,5 @@ def effects_of(measure: Measure) -> Iterator[EffectView]:
 
 
 def _over(value: float | None, spread: float) -> float | None:
+    """Return a value in standard deviations; None if there is none or nothing varies."""
     return None if value is None or spread <= 0.0 else value / spread

@@ -10,9 +10,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import pandas as pd
+from sqlalchemy.orm import Session
 
-from app.features.results.analysis.material import Material
+from app.features.results.analysis.material import Material, read_material
 from app.features.results.analysis.questions.measures import Measure, completed, measures_of
+from app.features.results.analysis.schemas import DashboardKind
 
 LONGEST_NAME = 64
 PERSON = ("participant_code", "kind", "simulated", "avatar", "order")
@@ -40,9 +42,22 @@ class WideTable:
     frame: pd.DataFrame
     columns: tuple[WideColumn, ...]
 
+    @property
+    def names(self) -> list[str]:
+        """Return the names of all columns, in their order."""
+        return [*PERSON, *(column.name for column in self.columns)]
 
-def wide_table(material: Material) -> WideTable:
-    """Return the values of valid completed participants; a cell without a value is missing."""
+
+def wide_table(db: Session, study_key: str, kind: DashboardKind) -> WideTable:
+    """Return the values of valid completed participants; a cell without a value is missing.
+
+    Raises NotFound for an unknown study.
+    """
+    return wide_table_of(read_material(db, study_key, kind, names=()))
+
+
+def wide_table_of(material: Material) -> WideTable:
+    """Return the wide table of a study whose tables can be read."""
     sessions = completed(material).sessions
     frame = sessions.loc[:, ["participant_code", "kind", "simulated", "avatar", "order"]]
     frame = frame.drop_duplicates("participant_code").set_index("participant_code").sort_index()

@@ -19,8 +19,7 @@ from app.features.people.audit import TrailHead, head_of
 from app.features.record.receipts import receipt_of
 from app.features.record.telemetry import epochs_of
 from app.features.results.analysis.codebook import codebook_frame
-from app.features.results.analysis.material import read_material
-from app.features.results.analysis.questions.wide import PERSON, WideColumn, wide_table
+from app.features.results.analysis.questions import WideColumn, wide_table
 from app.features.results.analysis.tables import (
     Kind,
     alarms_table,
@@ -208,10 +207,9 @@ class Contents:
         """
         if self.kind == "all" or self.only is not None:
             return
-        wide = wide_table(read_material(self.db, self.study_key, self.kind, names=()))
-        names = [*PERSON, *(column.name for column in wide.columns)]
-        rows = wide.frame[names].itertuples(index=False, name=None)
-        yield self._member("wide.csv", plain_pieces(names, rows))
+        wide = wide_table(self.db, self.study_key, self.kind)
+        rows = wide.frame[wide.names].itertuples(index=False, name=None)
+        yield self._member("wide.csv", plain_pieces(wide.names, rows))
         meanings = [one.name for one in fields(WideColumn)]
         described = iter([astuple(column) for column in wide.columns])
         yield self._member("wide_columns.csv", plain_pieces(meanings, described))

@@ -50,6 +50,8 @@ const SENTENCES: Readonly<Record<string, Key>> = {
   "account.made": "act.account.made",
   "account.password": "act.account.password",
   "invitation.revoked": "act.invitation.revoked",
+  "demo.loaded": "act.demo.loaded",
+  "demo.removed": "act.demo.removed",
   "study.created": "act.study.created",
   "study.version": "act.study.version",
   "study.duplicated": "act.study.duplicated",
