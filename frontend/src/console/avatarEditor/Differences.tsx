@@ -59,8 +59,9 @@ export function Differences(props: DifferencesProps): JSX.Element {
             </tr>
           </thead>
           {grouped(found).map(([group, rows]) => (
-            <tbody key={group}>
-              <tr>
+            <tbody key={group} aria-label={groupName(texts, group)}>
+              {/* biome-ignore lint/a11y/noAriaHiddenOnFocusable: a row takes no focus; the group is named already, this is for the eye */}
+              <tr aria-hidden="true">
                 <th colSpan={titles.length} scope="rowgroup" className={classes.groupHead}>
                   {groupName(texts, group)} ({rows.length})
                 </th>
