@@ -60,7 +60,11 @@ def test_figures_are_filtered_by_the_url_and_saved(
     expect(page.get_by_role("heading", name="Agency", exact=True)).to_be_visible(
         timeout=PATIENCE_MS
     )
-    expect(page.get_by_text("Too few participants for any result").first).to_be_visible()
+    too_few = page.get_by_text("Too few participants for any result").first
+    expect(too_few).to_be_hidden()
+    page.emulate_media(media="print")
+    expect(too_few).to_be_visible()
+    page.emulate_media(media="screen")
     assert axe(page) == []
     screenshot(page, "statistics")
     page.emulate_media(color_scheme="dark")
@@ -71,6 +75,8 @@ def test_figures_are_filtered_by_the_url_and_saved(
     expect(agency_row).to_contain_text("falls, p = .005")
     agency_row.get_by_role("button").click()
     expect(page.get_by_role("heading", name="Agency", exact=True)).to_be_in_viewport()
+    opened = page.locator("details[open]")
+    expect(opened.get_by_text("Too few participants for any result").first).to_be_visible()
 
     page.get_by_role("link", name="Preregistration", exact=True).click()
     expect(page.get_by_text("n = 3 of 12 planned")).to_be_visible(timeout=PATIENCE_MS)
