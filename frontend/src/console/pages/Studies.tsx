@@ -1,4 +1,4 @@
-/** The first page: what to try before the first session, then the state of the lab; the studies. */
+/** The first page: what to try until people take part, the state of the lab, the studies. */
 import { Button, Code, Progress, Text, Title } from "@mantine/core";
 import type { LabState as LabStateData } from "@shared/api/housekeeping";
 import type { StudySummary } from "@shared/api/types";
@@ -64,17 +64,17 @@ interface ListedProps {
   readonly archived: boolean;
 }
 
-/** Before the first session: what can be tried. Afterwards: the state of the lab. */
+/** The state of the lab as soon as there is a session; what can be tried until people take part. */
 function Listed({ studies, archived }: ListedProps): JSX.Element {
   const [since] = useState(midnight);
   const state = useQuery({ ...labQuery(since), enabled: !archived }).data;
-  const nobodyYet = studies.every(({ session_counts }) =>
-    Object.values(session_counts).every((count) => count === 0),
-  );
+  const counts = studies.map(({ session_counts }) => session_counts);
+  const isUntouched = counts.every((of) => Object.values(of).every((count) => count === 0));
+  const nobodyYet = counts.every((of) => (of["people"] ?? 0) === 0);
   return (
     <>
+      {!archived && !isUntouched && state !== undefined && <LabState state={state} />}
       {!archived && nobodyYet && <FirstSteps listed={studies} />}
-      {!archived && !nobodyYet && state !== undefined && <LabState state={state} />}
       <Cards studies={studies} progress={state?.studies ?? []} />
     </>
   );
