@@ -142,6 +142,7 @@ def _to_headset(folder: Path, duration_s: float) -> list[Figure]:
         Figure("headset", "p95 beside the relay's", ours[1], "ms", peer, bare[1]),
         Figure("headset", f"{what}, p99", ours[2], "ms", peer, bare[2]),
         Figure("headset", "messages to the headset", len(wearer.latencies_s), ""),
+        Figure("headset", "messages without trackers, which were lost then", wearer.lost, ""),
         Figure("headset", "dropped by the kernel", door["dropped"] or 0, "", "at most", 0),
         Figure("headset", "poses taken by the door, not on disk", taken - stored, "", "at most", 0),
         Figure("headset", "a foot is known to", shown["alignment"]["foot_mm"], "mm", "at most", 5),
@@ -178,6 +179,7 @@ class _Wearer:
 
     def __init__(self, server: LiveServer, token: str, lab: Lab) -> None:
         self.latencies_s: list[float] = []
+        self.lost = 0
         self.is_aligned = threading.Event()
         self._lab = lab
         self._over = threading.Event()
@@ -211,6 +213,9 @@ class _Wearer:
             if message["type"] != "trackers":
                 continue
             self.is_aligned.set()
+            if not {"LeftHand", "RightHand"} <= message["places"].keys():
+                self.lost += 1  # for a quarter of a second nothing had come
+                continue
             sent_s = self._lab.sent_s[self._lab.number(message["places"])]
             self.latencies_s.append(time.monotonic() - sent_s)
 
