@@ -111,10 +111,10 @@ def _to_headset(folder: Path, duration_s: float) -> list[Figure]:
     lab = Lab(duration_s + ALIGNS_WITHIN_S + 5.0)
     port, relay_port = free_udp_port(), free_udp_port()
     with (
-        LiveServer(folder) as server,
-        open_site(server) as site,
         _relay(relay_port) as relay_url,
         _relayed(relay_url) as relayed,
+        LiveServer(folder) as server,
+        open_site(server) as site,
     ):
         session_id, token = _session(site, port)
         path = f"/api/sessions/{session_id}/trackers"
@@ -307,9 +307,10 @@ def _relayed(url: str) -> Iterator[list[float]]:
     """Read the relay's messages while the block runs; yield how late each was."""
     latencies_s: list[float] = []
     over = threading.Event()
+    viewer = _connected(url)
 
     def read() -> None:
-        with _connected(url) as viewer:
+        with viewer:
             while not over.is_set():
                 try:
                     message = json.loads(viewer.recv(timeout=0.2))
