@@ -6,6 +6,7 @@ has happened for `STALLED_S` is out of reach; it then counts as touched, so that
 tried, too.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -36,8 +37,11 @@ SLOW: Final = MovementTraits(
     tempo=1.28,
     precision=0.0,
     movement_spread=0.0,
+    correction_per_s=0.0,
+    learning_per_s=0.0,
+    caught_s=math.inf,
 )
-"""Somebody who never misses, but whose reaction and pace only 5 % of drawn people exceed."""
+"""Somebody who never misses nor corrects, and whose slowness only 5 % of drawn people exceed."""
 _SETTLING_S = 1.0
 
 
