@@ -9,12 +9,19 @@ from app.models.accounts import (
     LoginToken,
     StudyMember,
 )
-from app.models.avatars import Avatar, AvatarVersion, HumanoidRow
+from app.models.avatars import Avatar, AvatarTuningRow, AvatarVersion, HumanoidRow
 from app.models.captures import CaptureContent, CapturePiece, CaptureRow, SavedJointMap
-from app.models.devices import Calibration, Device, HeadsetTest, HeadsetTestBatch, PairingCode
+from app.models.devices import (
+    Calibration,
+    Device,
+    HeadsetTest,
+    HeadsetTestBatch,
+    LiveDoor,
+    LiveLimb,
+    PairingCode,
+)
 from app.models.imports import AnswerImport, ImportedForm
 from app.models.ledger import KINDS, Ledger, LedgerSlot, Participant, SlotAttempt
-from app.models.live import LiveDoor, LiveLimb
 from app.models.quality import AlarmRow, PhaseLatency, PhaseQuality
 from app.models.questionnaires import Answer, ScoreValue, Submission
 from app.models.rights import AnswerCorrection, CopyMade, Erasure
@@ -33,7 +40,6 @@ from app.models.telemetry import (
     TrackerAlignment,
     TrackerChunk,
 )
-from app.models.tuning import AvatarTuningRow
 from app.models.types import UtcDateTime, new_id
 from app.models.walking import WalkingModelRow, WalkingScene, WalkSetRow
 

@@ -13,9 +13,9 @@ TAKE = "Continue with them"
 KNEE = "LeftLowerLegX"
 
 
-def edited(page: Page, url: str, column: int, value: str) -> None:
-    """Open the standard avatar and give the left knee another value."""
-    page.goto(f"{url}/{AVATAR}")
+def edited(page: Page, address: str, column: int, value: str) -> None:
+    """Open an avatar and give the left knee another value."""
+    page.goto(address)
     cell = page.locator(f"[data-row='{KNEE}'][data-column='{column}']")
     cell.dblclick(timeout=PATIENCE_MS)
     page.keyboard.type(value)
@@ -35,8 +35,8 @@ def test_unsaved_work_is_lost_neither_to_another_tab_nor_to_a_refusal(
     first, url = page_factory((1280, 800)), running_server.url
     Experimenter(first, url).log_in()
     second = first.context.new_page()
-    edited(first, url, 4, "111")
-    edited(second, url, 5, "7")
+    edited(first, f"{url}/{AVATAR}", 4, "111")
+    edited(second, f"{url}/{AVATAR}", 5, "7")
     page = first.context.new_page()
     first.close()
     second.close()
@@ -75,11 +75,7 @@ def test_unsaved_work_goes_on_from_its_own_version_and_stays_its_owners(
     shipped = api.get(f"{url}/api/avatars/standard").json()["newest"]["configuration"]
     made = {"key": "drafted", "title": "Drafted", "origin": "by_hand", "configuration": shipped}
     assert api.post(f"{url}/api/avatars", data=made).status == 201
-    page.goto(f"{url}/#/avatars/drafted")
-    page.locator(f"[data-row='{KNEE}'][data-column='4']").dblclick(timeout=PATIENCE_MS)
-    page.keyboard.type("111")
-    page.keyboard.press("Enter")
-    expect(page.get_by_text("1 unsaved change", exact=True)).to_be_visible(timeout=PATIENCE_MS)
+    edited(page, f"{url}/#/avatars/drafted", 4, "111")
     theirs = {"based_on": 1, "origin": "by_hand", "note": "Lighter."}
     theirs["configuration"] = {**shipped, "total_mass_kg": 60}
     assert api.post(f"{url}/api/avatars/drafted/versions", data=theirs).status == 201

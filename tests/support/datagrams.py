@@ -5,6 +5,8 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from tests.support.beside import beside
+
 HERE = "127.0.0.1"
 
 
@@ -26,19 +28,13 @@ def sender(port: int) -> Iterator[Callable[[bytes], object]]:
 @contextmanager
 def sending(port: int, packet: Callable[[int], bytes]) -> Iterator[None]:
     """Send 50 packets a second, numbered from 1, to a port of this machine during the block."""
-    stop = threading.Event()
 
-    def send() -> None:
+    def send(stop: threading.Event) -> None:
         with sender(port) as one:
             number = 0
             while not stop.wait(0.02):
                 number += 1
                 one(packet(number))
 
-    thread = threading.Thread(target=send)
-    thread.start()
-    try:
+    with beside(send):
         yield
-    finally:
-        stop.set()
-        thread.join()

@@ -1,4 +1,4 @@
-"""Apply operations to a configuration for a page or a script; nothing is stored."""
+"""Apply operations to a configuration, and compare versions; nothing is stored."""
 
 from collections.abc import Iterable
 
@@ -8,19 +8,29 @@ from app.errors import NotFound
 from app.features.movement.avatar.schemas import (
     AvatarEdit,
     AvatarEdited,
+    AvatarVersionDifference,
+    GroupDifference,
     LossView,
     OperationProblemView,
     ValueChangeView,
 )
-from app.features.movement.avatar.service import typed, unknown_humanoid, version_of
+from app.features.movement.avatar.service import (
+    avatar_by_key,
+    typed,
+    unknown_humanoid,
+    version_of,
+)
+from app.features.movement.avatar.views import version_view
 from app.protocol.avatar import configuration_of, file_of, loaded
 from app.protocol.avatar_editing import (
     Edited,
     OperationProblem,
     ValueChange,
     Versions,
+    differences,
     edited,
     fits_single_template,
+    sums_by_group,
 )
 from app.protocol.avatar_joints import joint_views
 from app.science.avatar.configuration import (
@@ -88,6 +98,25 @@ def edit(db: Session, request: AvatarEdit) -> AvatarEdited:
         problems=_problems((*done.problems, *incomplete)),
         joints=joint_views(done.configuration),
         fits_single_template=fits_single_template(done.configuration),
+    )
+
+
+def version_difference(db: Session, key: str, old: int, new: int) -> AvatarVersionDifference:
+    """Return how two versions of an avatar differ; raise NotFound."""
+    avatar = avatar_by_key(db, key)
+    before, after = version_of(db, key, old), version_of(db, key, new)
+    changes = differences(typed(before), typed(after))
+    return AvatarVersionDifference(
+        key=key,
+        title=avatar.title,
+        old=version_view(before),
+        new=version_view(after),
+        same=not changes,
+        changed=change_views(changes),
+        groups=[
+            GroupDifference(group=group, parts=list(parts), values=values)
+            for group, (parts, values) in sums_by_group(changes).items()
+        ],
     )
 
 

@@ -4,8 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Query, Response
 
-from app.features.movement.avatar.difference import version_difference
-from app.features.movement.avatar.editing import edit
+from app.features.movement.avatar.editing import edit, version_difference
 from app.features.movement.avatar.schemas import (
     MAX_VERSION,
     AvatarCheck,

@@ -1,7 +1,7 @@
 """The headset of a session: its connection, the state it is sent, and its avatar."""
 
 from app.features.record.headset.avatar import SessionAvatar, trial_avatar
-from app.features.record.headset.connection import next_message
+from app.features.record.headset.connection import next_message, until_one_ends
 from app.features.record.headset.goals import (
     calibration_underway,
     feet_tracked,
@@ -32,5 +32,6 @@ __all__ = [
     "serve_headset",
     "state_of_feet",
     "trial_avatar",
+    "until_one_ends",
     "worn_humanoid",
 ]

@@ -9,9 +9,9 @@ import asyncio
 import enum
 import logging
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Coroutine, Iterable
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
@@ -115,20 +115,14 @@ class HeadsetConnection:
             self.context.hub.publish(self.session_id, TAKEN_OVER, self)
             self.context.hub.headset_joined(self.session_id, abilities=self._abilities)
             self.context.hub.publish(self.session_id, "session")
-            tasks = [
-                asyncio.create_task(self._read()),
-                asyncio.create_task(self._send_outbox()),
-                asyncio.create_task(self._push_state(subscription)),
-                asyncio.create_task(self.monitor.run(lambda: not self._in_flight.locked())),
-            ]
             try:
-                done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-                for task in done:
-                    task.result()
+                await until_one_ends(
+                    self._read(),
+                    self._send_outbox(),
+                    self._push_state(subscription),
+                    self.monitor.run(lambda: not self._in_flight.locked()),
+                )
             finally:
-                for task in tasks:
-                    task.cancel()
-                await asyncio.gather(*tasks, return_exceptions=True)
                 self._leave()
 
     def _leave(self) -> None:
@@ -313,6 +307,19 @@ class HeadsetConnection:
             self._loop.call_soon_threadsafe(function, argument)
         except RuntimeError:  # the event loop has closed, so there is no connection left
             return
+
+
+async def until_one_ends(*coroutines: Coroutine[Any, Any, None]) -> None:
+    """Run coroutines side by side until one ends, end the others, and raise what it raised."""
+    tasks = [asyncio.create_task(one) for one in coroutines]
+    try:
+        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        for task in done:
+            task.result()
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
 
 
 async def next_message(socket: WebSocket) -> bytes | str:

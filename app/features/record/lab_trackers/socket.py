@@ -7,7 +7,7 @@ from pydantic import ValidationError
 from starlette.websockets import WebSocket
 
 from app.errors import InvalidInput, TakenOver
-from app.features.record.headset import next_message
+from app.features.record.headset import next_message, until_one_ends
 from app.features.record.lab_trackers.service import LabTrackers
 from app.features.record.telemetry import TelemetryWriter
 from app.platform.context import AppContext
@@ -38,18 +38,9 @@ class TrackerSocket:
         trackers = self.context.part(LabTrackers)
         wake = self._wake
         await asyncio.to_thread(trackers.attach, self.session_id, wake)
-        tasks = [
-            asyncio.create_task(self._read(trackers)),
-            asyncio.create_task(self._send(trackers, wake)),
-        ]
         try:
-            done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-            for task in done:
-                task.result()
+            await until_one_ends(self._read(trackers), self._send(trackers, wake))
         finally:
-            for task in tasks:
-                task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
             trackers.detach(self.session_id, wake)
 
     def _wake(self) -> None:

@@ -6,7 +6,7 @@
  * or a controller taken up by somebody who was calibrated with bare hands) with the usual one. Hips
  * without a waist tracker have no goal: inverse kinematics infers them from head and shins.
  */
-import { GOAL_PARTS, type Goals } from "@shared/avatar/goals";
+import { GOAL_PARTS, type Goals, NO_GOALS } from "@shared/avatar/goals";
 import type { Place } from "@shared/avatar/hips";
 import { plus, rotate, type Vector } from "@shared/rotations";
 import { AT_ORIGIN, composed, inverted } from "../tracking/places";
@@ -27,14 +27,7 @@ export class Calibrator {
   #usual: Readonly<Record<GoalPart, Place>> = fromDevices(usualOffsets(USUAL_STATURE_M));
   #usualOf = USUAL_STATURE_M;
   #shiftsM = NO_SHIFTS;
-  readonly #goals: MutableGoals = {
-    Hips: null,
-    Head: null,
-    LeftHand: null,
-    RightHand: null,
-    LeftLowerLeg: null,
-    RightLowerLeg: null,
-  };
+  readonly #goals: MutableGoals = { ...NO_GOALS };
 
   get calibration(): Calibration | null {
     return this.#calibration;

@@ -5,7 +5,7 @@ import type { HeadsetState } from "../telemetry";
 import { PromptedPerson } from "../testing/promptedPerson";
 import { ScriptedPerson, ScriptSource } from "../tracking/script";
 import { Headset } from "./headset";
-import { FakeBodies, FakeTelemetry, Kept, ORDER, STATE } from "./testing";
+import { FakeBodies, FakeTelemetry, Kept, ORDER, PANEL, STATE } from "./testing";
 
 const RATE_HZ = 90;
 const XR = {} as XRFrame;
@@ -113,17 +113,7 @@ describe("Calibration in the visit", () => {
     const { telemetry, headset, draw, calibrations } = await worn();
     await draw(4);
     const step = headset.calibrating.prompt?.step;
-    const panel = {
-      language: "en",
-      title: null,
-      text: null,
-      form: null,
-      answer: null,
-      acknowledge: false,
-      headset_off: false,
-      held: false,
-      called: true,
-    };
+    const panel = { ...PANEL, called: true };
     telemetry.state = { ...BEFORE, panel };
     await draw(40);
     expect(headset.calibrating.prompt).toMatchObject({ step, held: 0, canSkip: false });

@@ -4,6 +4,7 @@ import { ORDER as PREPARING } from "../tasks/testing/orders";
 import {
   type Frames,
   type HeadsetState,
+  type PanelOrder,
   type PhaseOrder,
   type ReportBody,
   type Status,
@@ -14,6 +15,19 @@ import {
 } from "../telemetry";
 import type { KnownBody, TrackedFrame, TrackingSource } from "../tracking/tracked";
 import type { Keep } from "./calibrating";
+
+/** A panel of the standby world: nothing is asked, and nobody is called. */
+export const PANEL: PanelOrder = {
+  language: "en",
+  title: null,
+  text: null,
+  form: null,
+  answer: null,
+  acknowledge: false,
+  headset_off: false,
+  held: false,
+  called: false,
+};
 
 export const ORDER: PhaseOrder = { ...PREPARING, duration_s: 2, freeze_s: 0.5 };
 

@@ -11,6 +11,7 @@ import numpy as np
 from app.wire import BODY_STREAMS
 from tests.features.record.headset.site import Headset, Site
 from tests.science.stream_quality.recordings import generated
+from tests.support.beside import beside
 from tests.wire.samples import RATE_HZ, message
 
 PER_BATCH = 9
@@ -69,21 +70,15 @@ class Streamer:
         With `probing` it also exchanges clock probes; then the block may not receive messages
         either.
         """
-        over = threading.Event()
 
-        def go_on() -> None:
+        def go_on(over: threading.Event) -> None:
             while not over.wait(PER_BATCH / RATE_HZ):
                 self.send_batch(running=running)
                 if probing:
                     self.probe()
 
-        thread = threading.Thread(target=go_on)
-        thread.start()
-        try:
+        with beside(go_on):
             yield
-        finally:
-            over.set()
-            thread.join()
 
     def probe(self) -> None:
         """Exchange one clock probe, as a headset does once a second."""

@@ -28,6 +28,7 @@ from tests.science.alignment.rooms import (
     recorded,
     some_room,
 )
+from tests.support.beside import beside
 from tests.support.datagrams import HERE, free_udp_port, sender
 
 SECONDS = 60.0
@@ -57,10 +58,9 @@ class SimulatedRoom:
     @contextmanager
     def tracking(self) -> Iterator[None]:
         """Send the trackers at their rate while the block runs."""
-        over = threading.Event()
         foot_m, _, _ = self._foot.at(self._hat.times_s)
 
-        def send() -> None:
+        def send(over: threading.Event) -> None:
             with sender(self._port) as door:
                 for n, at in enumerate(self._hat.times_s.tolist()):
                     if over.wait(max(0.0, self.began_s + at - time.monotonic())):
@@ -73,13 +73,8 @@ class SimulatedRoom:
                     trackers = {"hat": hat, "foot": foot}
                     door(json.dumps({"source": "lab", "time_s": at, "trackers": trackers}).encode())
 
-        thread = threading.Thread(target=send)
-        thread.start()
-        try:
+        with beside(send):
             yield
-        finally:
-            over.set()
-            thread.join()
 
     def heads_since(self, after_s: float) -> tuple[float, list[Json]]:
         """Return the headset's poses between a time of the room and now, and that now."""

@@ -1,18 +1,9 @@
 import { describe, expect, it } from "vitest";
 import type { PanelOrder } from "../../telemetry";
+import { PANEL } from "../testing";
 import { type Situation, wanted } from "./wanted";
 
-const ORDER: PanelOrder = {
-  language: "en",
-  title: "Step",
-  text: null,
-  form: null,
-  answer: null,
-  acknowledge: false,
-  headset_off: false,
-  held: false,
-  called: false,
-};
+const ORDER = { ...PANEL, title: "Step" };
 const CALM: Situation = {
   place: "acting",
   order: ORDER,
