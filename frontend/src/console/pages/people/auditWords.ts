@@ -105,6 +105,7 @@ export const KINDS = [
   "account",
   "invitation",
   "study",
+  "demo",
   "participant",
   "answer",
   "copy",
