@@ -54,7 +54,7 @@ export const homeDe: Readonly<Record<keyof typeof homeEn, string>> = {
     "Eine simulierte Person geht in vierfachem Tempo durch eine ganze Sitzung. Sie sitzen am Platz der Versuchsleitung.",
   "home.act": "Selbst ausprobieren",
   "home.act.body":
-    "Mit Maus und Tastatur an der Stelle der Versuchsperson, ohne Headset; ein neuer Tab öffnet sich.",
+    "Mit Maus und Tastatur an der Stelle der teilnehmenden Person, ohne Headset; ein neuer Tab öffnet sich.",
   "home.create": "Eine Studie anlegen",
   "home.create.body":
     "Aus einer Vorlage oder einer eigenen Datei. Jedes Problem wird beim Schreiben mit seiner Zeile gezeigt.",
