@@ -399,6 +399,36 @@ def test_words_that_tell_the_rows_of_a_cell_apart_are_never_averaged_silently(
     assert _COMMAND.figures(path, *_FACTOR)["missing"]["averaged_cells"] == 18
 
 
+def test_measures_coded_by_numbers_are_not_pooled(tmp_path: Path) -> None:
+    """A crossed column of numbers is refused as words are; one that counts trials is named."""
+    rows = [
+        f"P{person},{latency},{code},{100 * code + latency / 50 + person % 3}"
+        for person in range(6)
+        for latency in (0, 125, 350)
+        for code in (1, 2)
+    ]
+    for name in ("scale", "kind"):
+        path = _written(tmp_path, [f"person,latency,{name},score", *rows])
+        refused = _COMMAND.refusal(path, *_FACTOR)
+        assert f"Column {name!r} tells the values of each cell apart: 1, 2" in refused
+        assert f"--average {name!r}" in refused
+        over = _COMMAND.figures(path, *_FACTOR, "--average", name)
+        assert over["missing"]["averaged_over"] == [name]
+        assert any(f"their mean was taken, over {name}" in one for one in over["warnings"])
+    path = _written(tmp_path, ["person,latency,trial_number,score", *rows])
+    trials = _COMMAND.figures(path, *_FACTOR)
+    assert trials["missing"]["averaged_over"] == ["trial_number"]
+
+
+def test_participants_that_differ_only_in_capitals_are_asked_about(tmp_path: Path) -> None:
+    """P1 and p1 are analysed as two, and the first note asks whether they are one person."""
+    lines = [*_lines(), *(line.replace("P1", "p1") for line in _lines() if "P1" in line)]
+    first = _COMMAND.figures(_written(tmp_path, lines), *_FACTOR)["warnings"][0]
+    assert "person P1 and p1 differ only in capitals: one person?" in first
+    text = _COMMAND.run(_written(tmp_path, lines), *_FACTOR).output.splitlines()
+    assert text[1].startswith("Note: person P1 and p1")
+
+
 @pytest.mark.parametrize("code", ["-99", "99", "999.0"])
 def test_a_usual_code_for_missing_far_from_all_other_values_is_noted(
     tmp_path: Path, code: str

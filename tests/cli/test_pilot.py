@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from app.cli.commands import app
+from app.resources import study_configs_dir
 from tests.cli.invoked import Invoked
 
 _STUDY = "reembodiment-latency"
@@ -57,6 +58,21 @@ def test_the_text_marks_itself_and_states_assumptions() -> None:
     assert "processor time" in result.stderr
     own = _COMMAND.run("power", "four-latencies-williams", "--participants", "6", "--sets", "20")
     assert own.stdout.startswith("SIMULATED: the power of the preregistered test")
+
+
+def test_power_is_not_given_where_nobody_finishes(tmp_path: Path) -> None:
+    """If no data set can be analysed, one sentence says so, and power and level are dashes."""
+    shipped = study_configs_dir() / "assumptions" / f"{_STUDY}.yaml"
+    text = shipped.read_text(encoding="utf-8")
+    own = tmp_path / "assumptions.yaml"
+    own.write_text(text.replace("dropout: {value: 0.01", "dropout: {value: 0.99"), encoding="utf-8")
+    printed = _COMMAND.run(
+        "power", _STUDY, "--participants", "4", "--sets", "10", "--assumptions", own
+    ).stdout
+    assert "With n of 4 no data set could be analysed" in printed
+    assert "failed: data sets on which the test could not be computed, of 10 with" in printed
+    (row,) = (line.split() for line in printed.splitlines() if line.startswith("     4 "))
+    assert row[2:] == ["-"] * 6 + ["20"]
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,11 @@ NAMES_OF_MEASURES = frozenset(
     {"measure", "score", "variable", "instrument", "scale", "subscale", "axis", "reference", "unit"}
 )
 """Columns that say in words what a row measures: rows that differ in one are never averaged."""
+NAMES_OF_REPETITIONS = frozenset(
+    {"trial", "repetition", "repeat", "replicate", "rep", "run", "attempt", "round", "pass"}
+    | {"block", "sample", "frame", "index", "number", "no", "n", "line", "row", "id", "order"}
+)
+"""Columns whose numbers count repeated observations, which may be averaged over; it is noted."""
 NO_LEVEL = MISSING - {"none"}
 """Texts in a factor's column that mean that the row has no level of it."""
 
@@ -49,6 +54,8 @@ class TidyInput:
     lines: list[int]
     replicates: int
     left_out: dict[str, int]
+    told_apart_by: tuple[str, ...] = ()
+    """Columns of numbers, such as of trials, that tell the values of each cell apart."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +114,7 @@ def read_tidy(
         for at, name in enumerate(header)
         if name not in requested
     }
-    _require_one_value(others, keys, averaged)
+    told_apart_by = _require_one_value(others, keys, averaged)
     return TidyInput(
         subjects=columns[subject],
         within={name: columns[name] for name in within},
@@ -115,6 +122,7 @@ def read_tidy(
         lines=[row.line for row in rows],
         replicates=_repeated(rows, keys),
         left_out={reason: count for reason, count in left_out.items() if count},
+        told_apart_by=told_apart_by,
     )
 
 
@@ -127,15 +135,20 @@ def _check_averaged(averaged: Sequence[str], header: list[str], requested: list[
 
 def _require_one_value(
     others: dict[str, list[str]], keys: Sequence[tuple[str, ...]], averaged: Sequence[str]
-) -> None:
-    """Raise UnusableTable if columns that are not analysed say that values must not be averaged."""
+) -> tuple[str, ...]:
+    """Raise UnusableTable if columns that are not analysed say that values must not be averaged.
+
+    Return the columns over which the values of a cell are averaged.
+    """
     within_averaged = [
         (*key, *words)
         for key, *words in zip(keys, *(others[name] for name in averaged), strict=True)
     ]
     for name, words in others.items():
         _require_one_measure(name, words, keys)
-        _require_no_parts(name, words, within_averaged)
+        if name not in averaged:
+            _require_no_parts(name, words, within_averaged)
+    return tuple(name for name, words in others.items() if _tells_apart(words, keys))
 
 
 def _require_one_measure(
@@ -160,16 +173,12 @@ def _require_one_measure(
 def _require_no_parts(name: str, words: Sequence[str], keys: Sequence[tuple[str, ...]]) -> None:
     """Raise UnusableTable if a column's words tell the rows of every cell apart.
 
-    Its words recur from cell to cell, each at most once, and most cells have all of them: they may
-    be measures, items or levels of a further factor. Times and remarks do not recur so.
+    Columns of repetitions are allowed, if what they contain are numbers.
     """
-    found, counts = set(words), Counter(keys)
-    full = sum(count == len(found) for count in counts.values())
-    if len(found) < 2 or 2 * full < len(counts):
+    if not _tells_apart(words, keys):
         return
-    if any(as_number(word) is not None for word in found):
-        return
-    if "" in found or len(set(zip(keys, words, strict=True))) != len(keys):
+    numbers = all(as_number(word) is not None for word in words)
+    if numbers and _counts_repetitions(name):
         return
     listed = ordered_levels(words)
     shown = ", ".join(listed[:_VALUES_SHOWN]) + (", ..." if listed[_VALUES_SHOWN:] else "")
@@ -179,6 +188,27 @@ def _require_no_parts(name: str, words: Sequence[str], keys: Sequence[tuple[str,
         f" '{name}=...'. If they are levels of a factor, name it with --within '{name}', or average"
         f" over it knowingly with --average '{name}'."
     )
+
+
+def _tells_apart(words: Sequence[str], keys: Sequence[tuple[str, ...]]) -> bool:
+    """Return whether words recur from cell to cell, each at most once, and most cells have all.
+
+    They may be measures, items or levels of a further factor, in words or coded by whole numbers.
+    Times and remarks do not recur so.
+    """
+    found, counts = set(words), Counter(keys)
+    full = sum(count == len(found) for count in counts.values())
+    if len(found) < 2 or 2 * full < len(counts):
+        return False
+    numbers = [number for number in map(as_number, found) if number is not None]
+    if numbers and not (len(numbers) == len(found) and all(map(float.is_integer, numbers))):
+        return False
+    return "" not in found and len(set(zip(keys, words, strict=True))) == len(keys)
+
+
+def _counts_repetitions(name: str) -> bool:
+    parts = re.split(r"[^a-z]+", re.sub(r"([a-z])([A-Z])", r"\1_\2", name).casefold())
+    return not NAMES_OF_REPETITIONS.isdisjoint(parts)
 
 
 def _fulfilling(condition: str, header: list[str], rows: list[_Row]) -> list[_Row]:

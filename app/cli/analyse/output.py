@@ -37,7 +37,9 @@ def as_text(done: Analysis) -> str:
         f", {count} left out ({reason if reason not in order.where else 'not ' + reason})"
         for reason, count in done.rows_left_out.items()
     )
-    lines = [f"{order.measure} by {factors}: {complete}.", f"{rows}.", "", *_means(done)]
+    lines = [f"{order.measure} by {factors}: {complete}."]
+    lines += [f"Note: {one}." for one in done.alike]
+    lines += [f"{rows}.", "", *_means(done)]
     for family in done.families:
         lines += ["", *_family(family)]
     if done.rm_anova is not None:
@@ -47,7 +49,8 @@ def as_text(done: Analysis) -> str:
     lines += ["", *(line.format(seed=order.seed) for line in _LEGEND)]
     if len(cells.subjects) < _MANY:
         lines.append(_NARROW)
-    lines += [f"Note: {warning}." for warning in (one.rstrip(".") for one in done.warnings)]
+    others = (one.rstrip(".") for one in done.warnings if one not in done.alike)
+    lines += [f"Note: {warning}." for warning in others]
     return "\n".join(lines)
 
 

@@ -46,6 +46,7 @@ def as_json(done: Analysis) -> dict[str, Any]:
             "cells": done.cells.n_missing,
             "empty_rows": done.cells.n_empty,
             "averaged_cells": done.cells.n_averaged,
+            "averaged_over": list(done.averaged_over),
             "left_out_listwise": list(done.complete.left_out),
             "rule": "listwise for Friedman, Page and ANOVA; pairwise for Wilcoxon; none imputed",
         },

@@ -1,5 +1,6 @@
 """Run `reembody analyse`: apply all usual tests to a tidy table."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -75,6 +76,10 @@ class Analysis:
     rows_used: int
     rows_left_out: dict[str, int]
     """How many rows of the file were left out, by reason."""
+    averaged_over: tuple[str, ...] = ()
+    """Columns that tell the values of each cell apart, whose mean was taken."""
+    alike: tuple[str, ...] = ()
+    """The warnings about subjects that may be one person, which come first."""
     warnings: list[str] = field(default_factory=list)
 
 
@@ -104,7 +109,8 @@ def carry_out(order: AnalyseOrder) -> Analysis:
     complete = cells.complete()
     _check_usable(order, cells, complete)
     left_out = read.left_out | ({f"no {order.measure}": cells.n_empty} if cells.n_empty else {})
-    warnings = _warnings(cells, complete, read.replicates)
+    alike = _alike(cells.subjects, order.subject)
+    warnings = alike + _warnings(cells, complete, read)
     warnings += _codes(order.measure, read)
     warnings += [
         f"{count} rows have {reason} and were left out"
@@ -129,6 +135,8 @@ def carry_out(order: AnalyseOrder) -> Analysis:
         else None,
         rows_used=int(cells.rows.sum()),
         rows_left_out=left_out,
+        averaged_over=read.told_apart_by,
+        alike=tuple(alike),
         warnings=warnings,
     )
 
@@ -176,7 +184,20 @@ def _check_usable(order: AnalyseOrder, cells: Cells, complete: Complete) -> None
         )
 
 
-def _warnings(cells: Cells, complete: Complete, replicates: int) -> list[str]:
+def _alike(subjects: Sequence[str], column: str) -> list[str]:
+    """Ask about subjects whose names differ only in capitals, and may be one person."""
+    spelt: dict[str, list[str]] = {}
+    for name in subjects:
+        spelt.setdefault(name.casefold(), []).append(name)
+    return [
+        f"{column} {' and '.join(names)} differ only in capitals: one person? They were analysed as"
+        f" {len(names)}; if they are one, spell them alike"
+        for names in spelt.values()
+        if len(names) > 1
+    ]
+
+
+def _warnings(cells: Cells, complete: Complete, read: TidyInput) -> list[str]:
     warnings = [
         f"left out of Friedman, Page and ANOVA (listwise): {name} lacks"
         f" {missing_cells(cells, name)}"
@@ -186,9 +207,12 @@ def _warnings(cells: Cells, complete: Complete, replicates: int) -> list[str]:
         warnings.append(
             f"{cells.n_averaged} of {cells.rows.size} cells have several values, at most"
             f" {int(cells.rows.max())}; their mean was taken"
+            + (f", over {', '.join(read.told_apart_by)}" if read.told_apart_by else "")
         )
-    if replicates:
-        warnings.append(f"{replicates} rows duplicate an earlier one; they count as replicates")
+    if read.replicates:
+        warnings.append(
+            f"{read.replicates} rows duplicate an earlier one; they count as replicates"
+        )
     return warnings
 
 

@@ -154,7 +154,10 @@ def paragraphs(report: CohortReport) -> Mapping[str, str]:
     else:
         test = curve.header["test"]
         points = "; ".join(
-            f"n = {one.n}: {one.power:.2f} [{one.low:.2f}, {one.high:.2f}], level {one.level:.3f}"
+            f"n = {one.n}: no data set could be analysed"
+            if one.never_tested
+            else f"n = {one.n}: {one.power:.2f} [{one.low:.2f}, {one.high:.2f}],"
+            f" level {one.level:.3f}"
             for one in curve.points
         )
         declared = (

@@ -32,7 +32,21 @@ def _lines(curve: Curve) -> Iterator[str]:
     target = header["target"]
     smallest = smallest_sufficient(curve.points, target)
     planned = f"{header['planned_n']} are planned"
-    if smallest is None:
+    hopeless = [point.n for point in curve.points if point.never_tested]
+    if hopeless:
+        numbers = ", ".join(map(str, hopeless))
+        yield (
+            f"With n of {numbers} no data set could be analysed, so there is no power and no level:"
+            " too few participants reach the test. Look at the dropout that is assumed."
+        )
+    if any(point.failures + point.level_failures for point in curve.points):
+        yield (
+            f"failed: data sets on which the test could not be computed, of {header['sets']} with"
+            f" and {header['sets']} without the effect; they count as not significant."
+        )
+    if hopeless and len(hopeless) == len(curve.points):
+        yield f"No number can be recommended; {planned}."
+    elif smallest is None:
         yield f"With none of these numbers does the lower bound reach {target:g}; {planned}."
     else:
         yield f"{smallest} is the smallest n whose lower bound reaches {target:g}; {planned}."
@@ -47,6 +61,12 @@ def _lines(curve: Curve) -> Iterator[str]:
 
 
 def _row(point: PowerPoint) -> str:
+    if point.never_tested:
+        return (
+            f"{point.n:6d} {point.mean_in_test:8.1f}   {'-':>5}   {'-':^14}   {'-':>5}   "
+            f"{'-':^14}   {_or_dash(None)}  {_or_dash(None)}"
+            f"  {point.failures + point.level_failures:6d}"
+        )
     return (
         f"{point.n:6d} {point.mean_in_test:8.1f}   {point.power:5.3f}   "
         f"{point.low:.3f} to {point.high:.3f}   {point.level:5.3f}   "

@@ -19,7 +19,7 @@ from app.science.anatomy import (
 from app.science.fitting.assembly import assemble
 from app.science.fitting.bodies import parts_of_bodies
 from app.science.fitting.constrained import constrained
-from app.science.fitting.label_checks import label_notice
+from app.science.fitting.label_checks import label_notice, unlike_a_body
 from app.science.fitting.landmarks import Landmarks, landmarks_of
 from app.science.fitting.lower_body import legs_of, pelvis_of
 from app.science.fitting.model import FitError, Fitted, Part, Parts
@@ -84,6 +84,9 @@ def _fit_markers(motion: MarkerMotion) -> tuple[Fitted, list[Notice]]:
         raise FitError("The capture has no frames, so no skeleton can be fitted.")
     notices: list[Notice] = []
     marks = landmarks_of(motion)
+    noise = unlike_a_body(marks)
+    if noise is not None:
+        raise FitError(noise.sentence)
     upright = upright_notice(tilts_deg(_joints_near(marks)))
     if upright is not None:
         notices.append(upright)

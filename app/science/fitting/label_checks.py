@@ -6,12 +6,14 @@ ones), hence its up = back x right; from the body follow its up (from the knees 
 its front (from heels or ankles to toes). In the median over the frames
 
 - the pelvis' up has to point away from the knees, else hip centres would lie above the pelvis;
-- toes have to point to the front = up x right;
+- the toes of each foot have to point to the front = up x right;
 - the legs, the feet and the shoulders have to be in the order of the pelvis, left to right. Feet
   cross a little where people walk as on a line; exchanged ones lie far on the wrong side.
 
 If only the first two fail, left and right are mirrored, as from left-handed axes: the capture is
 mirrored back. Anything else is a wrong label, which cannot be mended without guessing.
+
+Before all that, markers have to move like a body: those of one segment keep their distance.
 """
 
 import numpy as np
@@ -22,7 +24,40 @@ from app.science.rotations import FloatArray
 
 _CROSSED = -0.15
 """Cosine of the ankles' left-to-right with the pelvis' below which the feet are exchanged."""
+_SEGMENTS = (
+    ("LASI", "RASI"), ("LKNE", "LANK"), ("RKNE", "RANK"), ("LHEE", "LTOE"), ("RHEE", "RTOE"),
+    ("LELB", "LWRA"), ("RELB", "RWRA"),
+)  # fmt: skip
+"""Landmarks at both ends of one segment."""
+_FEWEST_SEGMENTS = 3
+_MOST_VARYING = 0.5
 _NEEDED = ("LASI", "RASI", "LKNE", "RKNE", "LANK", "RANK")
+
+
+def unlike_a_body(marks: Landmarks) -> Notice | None:
+    """Return a refusal if the segments' lengths vary over time as no body's do, else None.
+
+    A length varies by the range of the middle 80 % of its values over their median; what counts is
+    the median segment, since a single wrong label makes one or two of them vary.
+    """
+    varying = []
+    for one, other in _SEGMENTS:
+        if marks.has(one, other):
+            lengths_m = np.linalg.norm(marks[one] - marks[other], axis=-1)
+            lengths_m = lengths_m[np.isfinite(lengths_m)]
+            if len(lengths_m):
+                low, middle, high = np.quantile(lengths_m, (0.1, 0.5, 0.9)).tolist()
+                varying.append((high - low) / middle if middle > 0.0 else 0.0)
+    if len(varying) < _FEWEST_SEGMENTS or float(np.median(varying)) <= _MOST_VARYING:
+        return None
+    return _refused(
+        "These markers do not move like a body: the distances within its segments change.",
+        f"a change by {100.0 * float(np.median(varying)):.0f} % of the length (median of"
+        f" {len(varying)} segments)",
+        f"at most {100.0 * _MOST_VARYING:.0f} %",
+        "Check that the labels belong to these markers all the time, and export again.",
+        rule="length",
+    )
 
 
 def label_notice(marks: Landmarks) -> Notice | None:
@@ -52,7 +87,17 @@ def label_notice(marks: Landmarks) -> Notice | None:
                 "Exchange the labels of left and right that are wrong, and export again.",
             )
     tilt = _cosine(np.cross(marks.middle(*back) - front, right), up)
-    toes = _toes_forward(marks, np.cross(up, right))
+    feet = _toes_forward(marks, np.cross(up, right))
+    toes = float(np.mean([*feet.values()])) if feet else 1.0
+    backwards = [side for side, cosine in feet.items() if cosine < 0.0]
+    if len(backwards) == 1 and tilt >= 0.0:
+        (side,) = backwards
+        return _refused(
+            f"The {side} foot points backwards, the other one forwards.",
+            f"its toes point {_degrees(feet[side])} away from the body's front",
+            "less than 90 degrees",
+            f"Exchange the labels of heel and toes of the {side} foot.",
+        )
     if tilt >= 0.0 and toes >= 0.0:
         return None
     if tilt < 0.0 and toes < 0.0:
@@ -76,15 +121,16 @@ def label_notice(marks: Landmarks) -> Notice | None:
     )
 
 
-def _toes_forward(marks: Landmarks, front: FloatArray) -> float:
-    """Return the cosine between feet and front; 1 without toes, which then are no evidence."""
-    cosines = []
-    for letter in "LR":
+def _toes_forward(marks: Landmarks, front: FloatArray) -> dict[str, float]:
+    """Return the cosine between foot and front by side; none without toes, as no evidence."""
+    cosines = {}
+    for side in ("left", "right"):
+        letter = side[0].upper()
         toe = next((name for name in (f"{letter}TOE", f"{letter}MT5") if marks.has(name)), None)
         if toe is not None:
             heel = f"{letter}HEE" if marks.has(f"{letter}HEE") else f"{letter}ANK"
-            cosines.append(_cosine(marks[toe] - marks[heel], front))
-    return float(np.mean(cosines)) if cosines else 1.0
+            cosines[side] = _cosine(marks[toe] - marks[heel], front)
+    return cosines
 
 
 def _cosine(a: FloatArray, b: FloatArray) -> float:

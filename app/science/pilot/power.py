@@ -66,6 +66,11 @@ class PowerPoint:
     type_m: float | None
     mean_estimate: float | None
 
+    @property
+    def never_tested(self) -> bool:
+        """Whether the test could be computed on no data set, so that 0 is no finding."""
+        return self.failures == self.level_failures == self.sets
+
 
 def power_point(n: int, effect: Results, null: Results, assumed: float) -> PowerPoint:
     """Summarise the tests of data sets with n participants.

@@ -28,6 +28,14 @@ from app.science.rotations import FloatArray
 _LOWEST_RATIO, _HIGHEST_RATIO = 0.5, 2.0
 _LOWEST_STEP_M = 0.02
 _LOWEST_STATURE_M, _HIGHEST_STATURE_M = 0.5, 2.6
+_SMALLEST_WALKER_M = 0.85
+"""Smaller people hardly walk; the same limit as for the guess of a file's unit."""
+_ADULT_M = (1.4, 2.1)
+_CM_PER_INCH = 2.54
+_SIDES_RATIO = 1.7
+"""Ratio of both sides' mean step heights from which they are noted; captured walks had 1.3."""
+_HIGHEST_STEP_M = 0.4
+"""Higher lifts are dance or climbing, whose sides may differ."""
 
 
 def checked_skeleton(
@@ -113,16 +121,54 @@ def stature_notice(leg_length_m: float | None) -> Notice | None:
     if leg_length_m is None:
         return None
     stature_m = leg_length_m / (PUBLISHED["thigh"] + PUBLISHED["shank"])
-    if _LOWEST_STATURE_M <= stature_m <= _HIGHEST_STATURE_M:
+    if _SMALLEST_WALKER_M <= stature_m <= _HIGHEST_STATURE_M:
         return None
+    lowest_m = _SMALLEST_WALKER_M if stature_m >= _LOWEST_STATURE_M else _LOWEST_STATURE_M
     return Notice(
         "length",
         "noted",
         "The person's size is not a human's: the file's unit of length may be wrong, and with it"
         " every length and speed of the capture.",
         f"legs of {leg_length_m:.3g} m, as of a stature of {stature_m:.3g} m",
-        f"a stature of {_LOWEST_STATURE_M} to {_HIGHEST_STATURE_M} m",
+        f"a stature of {lowest_m} to {_HIGHEST_STATURE_M} m{_if_inches(stature_m)}",
         "Give the unit: --unit with metres per unit, or in the settings of the capture.",
+    )
+
+
+def _if_inches(stature_m: float) -> str:
+    """Name the commonest mistake, inches taken for centimetres or the reverse, if it fits."""
+    for taken, meant, other_m in (
+        ("centimetres", "inches", stature_m * _CM_PER_INCH),
+        ("inches", "centimetres", stature_m / _CM_PER_INCH),
+    ):
+        if _ADULT_M[0] <= other_m <= _ADULT_M[1]:
+            return (
+                f" (it would be {other_m:.2f} m if numbers read as {taken} are {meant}, a factor"
+                f" of {_CM_PER_INCH})"
+            )
+    return ""
+
+
+def uneven_steps_notice(left_m: float | None, right_m: float | None) -> Notice | None:
+    """Return a notice if the mean step heights of both sides differ by more than people's do.
+
+    Steps of less than 2 cm on both sides are shuffles, whose ratio means nothing; lifts of more
+    than 40 cm are no walk.
+    """
+    if left_m is None or right_m is None:
+        return None
+    if not _LOWEST_STEP_M <= max(left_m, right_m) <= _HIGHEST_STEP_M:
+        return None
+    if max(left_m, right_m) <= _SIDES_RATIO * min(left_m, right_m):
+        return None
+    return Notice(
+        "step_height",
+        "noted",
+        "The steps of one side are much higher than those of the other.",
+        f"{100.0 * left_m:.1f} cm left, {100.0 * right_m:.1f} cm right, on average",
+        f"at most {_SIDES_RATIO} times as high on one side",
+        "If the person did not limp or step onto something, check the labels of heels and toes and"
+        " which joints are mapped to feet and toes.",
     )
 
 

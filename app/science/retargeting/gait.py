@@ -120,6 +120,10 @@ class Walk:
         """Mean height of the lifts; None without a whole stride."""
         return _mean([stride.height_m for stride in self.strides])
 
+    def mean_step_height_of_m(self, side: Side) -> float | None:
+        """Mean height of one side's lifts; None without a whole stride of it."""
+        return _mean([stride.height_m for stride in self.strides if stride.side == side])
+
 
 def walk_figures(
     motion: RigMotion,

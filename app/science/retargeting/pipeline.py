@@ -17,6 +17,7 @@ from app.science.retargeting.anatomy_checks import (
     stature_notice,
     step_height_notice,
     toes_notice,
+    uneven_steps_notice,
 )
 from app.science.retargeting.contacts import find_contacts
 from app.science.retargeting.foot_locking import LockedFeet, lock_feet
@@ -166,9 +167,17 @@ def retarget_motion(
         toes_notice(source, source_map),
         stature_notice(None if walks is None else walks.source.leg_length_m),
         _step_notice(walks, retargeter.scale),
+        _uneven_notice(walks),
     )
     found = tuple(notice for notice in notices if notice is not None)
     return replace(_result(retargeter, motion, walks, floor), notices=found)
+
+
+def _uneven_notice(walks: Walks | None) -> Notice | None:
+    if walks is None:
+        return None
+    height_m = walks.source.mean_step_height_of_m
+    return uneven_steps_notice(height_m("left"), height_m("right"))
 
 
 def _step_notice(walks: Walks | None, leg_ratio: float) -> Notice | None:

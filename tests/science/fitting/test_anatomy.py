@@ -95,6 +95,8 @@ def test_a_real_capture_upside_down_is_turned_over(shared_data: Path, name: str)
             "the feet are swapped against the pelvis",
         ),
         ([("LTOE", "LHEE"), ("RTOE", "RHEE")], "The feet point backwards"),
+        ([("LTOE", "LHEE")], "The left foot points backwards"),
+        ([("RTOE", "RHEE")], "The right foot points backwards"),
     ],
 )
 def test_labels_that_contradict_each_other_are_refused(
@@ -105,6 +107,31 @@ def test_labels_that_contradict_each_other_are_refused(
         fit_skeleton(_swapped(markers_on(moving(2)), *pairs))
     for part in ("Found: ", "degrees", "expected: less than 90 degrees", "Exchange the labels"):
         assert part in str(refused.value)
+
+
+@pytest.mark.parametrize("foot", ["L", "R"])
+def test_one_foot_of_a_real_walk_with_heel_and_toes_exchanged_is_refused(
+    shared_data: Path, foot: str
+) -> None:
+    """Each foot is judged by itself: one that points backwards is named with the remedy."""
+    path = shared_data / "motion" / "cmu_c3d/02_01.c3d"
+    motion = read_capture(path.read_bytes(), name=path.name).motion
+    assert isinstance(motion, MarkerMotion)
+    ends = {end: next(name for name in motion.names if name.endswith(foot + end))
+            for end in ("HEE", "TOE")}  # fmt: skip
+    side = {"L": "left", "R": "right"}[foot]
+    with pytest.raises(FitError, match=f"The {side} foot points backwards") as refused:
+        fit_skeleton(_swapped(motion, (ends["HEE"], ends["TOE"])))
+    assert f"labels of heel and toes of the {side} foot" in str(refused.value)
+
+
+def test_noise_is_refused_as_no_body() -> None:
+    """Markers that are noise are refused because segments change their length, not by luck."""
+    markers = markers_on(moving(2))
+    noise = np.random.default_rng(7).normal(0.0, 0.5, markers.positions_m.shape)
+    for places in (noise, markers.positions_m + noise):
+        with pytest.raises(FitError, match="do not move like a body"):
+            fit_skeleton(replace(markers, positions_m=places))
 
 
 def test_sides_that_differ_by_ten_centimetres_get_the_length_that_fits() -> None:

@@ -9,7 +9,12 @@ import pytest
 from app.adapters.captures.axes import turned_rig_motion
 from app.adapters.captures.reader import read_capture_file
 from app.science.anatomy import mirrored_skeleton, turned_over_skeleton
-from app.science.retargeting.anatomy_checks import checked_skeleton, step_height_notice
+from app.science.retargeting.anatomy_checks import (
+    checked_skeleton,
+    stature_notice,
+    step_height_notice,
+    uneven_steps_notice,
+)
 from app.science.retargeting.joint_map import propose_joint_map
 from app.science.retargeting.pipeline import Retargeted, retarget_motion
 from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, reference_avatar
@@ -202,3 +207,28 @@ def test_unequal_sides_and_short_arms_of_a_skeleton_are_noted() -> None:
     assert same is odd
     assert {(one.rule, one.action) for one in notices} == {("sides", "noted"), ("length", "noted")}
     assert any("16.3 cm left, 32.6 cm right" in one.value for one in notices)
+
+
+def test_steps_of_very_different_height_on_both_sides_are_noted() -> None:
+    """One exchanged foot gave 21.8 and 11.7 cm; captured walks and high dance lifts are silent."""
+    noted = uneven_steps_notice(0.218, 0.117)
+    assert noted is not None
+    assert (noted.rule, noted.action) == ("step_height", "noted")
+    assert "21.8 cm left, 11.7 cm right" in noted.value
+    assert uneven_steps_notice(0.117, 0.218) is not None
+    for left_m, right_m in ((0.0818, 0.1037), (0.906, 0.355), (0.019, 0.005)):
+        assert uneven_steps_notice(left_m, right_m) is None
+    assert uneven_steps_notice(None, 0.1) is None
+
+
+def test_a_body_smaller_by_the_ratio_of_inch_and_centimetre_is_noted() -> None:
+    """Legs of a stature of 0.67 m are noted with the ratio that would explain them."""
+    leg_m = 0.491 * 1.70
+    assert stature_notice(leg_m) is None
+    small = stature_notice(leg_m / 2.54)
+    assert small is not None
+    assert "0.85 to 2.6 m (it would be 1.70 m if numbers read as cent" in small.valid
+    assert "2.54" in small.valid
+    large = stature_notice(leg_m * 2.54)
+    assert large is not None
+    assert "it would be 1.70 m if numbers read as inches are centimetres" in large.valid
