@@ -10,29 +10,28 @@ BUFFER_BYTES = 4 * 2**20
 """The kernel's buffer that is asked for: seconds of what the busiest sources send."""
 OLDEST_S = 10.0
 _ON_LINUX = sys.platform == "linux"
-# Options of Linux, sent back beside each datagram, that Python does not name.
+# Options of Linux that Python does not name.
 _ARRIVAL = 35  # SO_TIMESTAMPNS
-_DROPS = 40  # SO_RXQ_OVFL
+_MEMORY = 55  # SO_MEMINFO, since Linux 4.12
+_MEMORY_FIELDS = "@9I"
+_DROPS = 8  # SK_MEMINFO_DROPS, the last field
 _TIMESPEC = "@ll"
-_SPACE = socket.CMSG_SPACE(struct.calcsize(_TIMESPEC)) + socket.CMSG_SPACE(4) if _ON_LINUX else 0
+_SPACE = socket.CMSG_SPACE(struct.calcsize(_TIMESPEC)) if _ON_LINUX else 0
 
 
 class DatagramSocket:
     """A UDP socket that does not block; raises OSError if the address cannot be bound.
 
-    `dropped` counts what the kernel dropped because its buffer was full; None where it does not
-    say. `is_shared`: other programs may take the same multicast packets.
+    `is_shared`: other programs may take the same multicast packets.
     """
 
     def __init__(self, address: str, port: int, *, is_shared: bool = False) -> None:
-        self.dropped: int | None = 0 if _ON_LINUX else None
         self.raw = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             self.raw.setblocking(False)
             self.raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
             if _ON_LINUX:
                 self.raw.setsockopt(socket.SOL_SOCKET, _ARRIVAL, 1)
-                self.raw.setsockopt(socket.SOL_SOCKET, _DROPS, 1)
             if is_shared:
                 self.raw.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             self.raw.bind((address, port))
@@ -49,6 +48,22 @@ class DatagramSocket:
         membership = socket.inet_aton(group) + socket.inet_aton(interface)
         self.raw.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
 
+    def dropped(self) -> int | None:
+        """Return how many datagrams the kernel dropped, its buffer being full; None if unknown.
+
+        The kernel is asked: the count that it sends beside a datagram is of when that one came in,
+        so a flood with nothing after it would be hidden.
+        """
+        if not _ON_LINUX:
+            return None
+        try:
+            fields = self.raw.getsockopt(
+                socket.SOL_SOCKET, _MEMORY, struct.calcsize(_MEMORY_FIELDS)
+            )
+            return int(struct.unpack(_MEMORY_FIELDS, fields)[_DROPS])
+        except (OSError, struct.error):
+            return None
+
     def receive(self) -> tuple[bytes, tuple[str, int], float]:
         """Return a datagram, its sender, and how many seconds ago it arrived.
 
@@ -61,9 +76,7 @@ class DatagramSocket:
         packet, extra, _, sender = self.raw.recvmsg(LARGEST_BYTES, _SPACE)
         age_s = 0.0
         for level, kind, data in extra:
-            if (level, kind) == (socket.SOL_SOCKET, _DROPS):
-                self.dropped = struct.unpack("@I", data[:4])[0]
-            elif (level, kind) == (socket.SOL_SOCKET, _ARRIVAL):
+            if (level, kind) == (socket.SOL_SOCKET, _ARRIVAL):
                 age_s = _age_s(*struct.unpack(_TIMESPEC, data))
         return packet, sender, age_s
 

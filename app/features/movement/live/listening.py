@@ -149,8 +149,8 @@ class Listener:
                 except Exception:
                     # One batch is lost; the door must stay open for the ones that follow.
                     log.exception("tracking data could not be taken")
-                drops = [each.dropped for each in sockets if each.dropped is not None]
-                self.received.dropped = sum(drops) if drops else None
+            drops = [count for one in sockets if (count := one.dropped()) is not None]
+            self.received.dropped = sum(drops) if drops else None
             self._ask(sockets[0])
 
     def _ask(self, commands: DatagramSocket) -> None:

@@ -24,7 +24,7 @@ class DoorWish(BaseModel):
 
     is_open: bool
     interface: Annotated[str, StringConstraints(max_length=45)] = "127.0.0.1"
-    port: int = Field(ge=1024, le=65535)
+    port: int = Field(strict=True, ge=1024, le=65535)
     server: Annotated[str, StringConstraints(max_length=45)] | None = None
     multicast: bool = False
 

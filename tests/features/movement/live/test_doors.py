@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.adapters.live import connect_request, keep_alive, model_request
+from app.adapters.live import DATA_PORT, connect_request, keep_alive, model_request
 from app.features.movement.live.natnet_link import ASK_EVERY_S, LOST_S, NatNetLink
 from tests.adapters.live.packets import bundle, definitions, frame, server_info, vmc
 from tests.features.lab import Json, Lab, error, ok
@@ -16,6 +16,7 @@ from tests.support.datagrams import HERE, free_udp_port, sender
 
 V4 = (4, 1)
 BAD = (422, "invalid_input")
+REMEDY = "Choose another port, or close that door first."
 
 
 def open_door(lab: Lab, door: str, **fields: object) -> Json:
@@ -186,9 +187,35 @@ def test_what_a_door_cannot_be_is_refused(open_lab: Lab) -> None:
     other = error(put("/api/trackers/doors/osc", json={**body, "interface": "192.0.2.1"}), *BAD)
     assert HERE in other["valid"]
     assert "Motive" in error(put("/api/trackers/doors/natnet", json=body), *BAD)["message"]
-    for wrong in ({"interface": "lab"}, {"port": 80}, {"interface": "::1"}):
+    for wrong in ({"interface": "lab"}, {"port": 80}, {"port": "38570 "}, {"interface": "::1"}):
         error(put("/api/trackers/doors/osc", json={**body, **wrong}), *BAD)
     assert put("/api/trackers/doors/usb", json=body).status_code == 422
+    loopback_network, of_all = "127.255.255.255", "255.255.255.255"
+    for server in (of_all, "0.0.0.0", "0.1.2.3", "239.255.42.99", "250.0.0.1", loopback_network):  # noqa: S104
+        wish = {**body, "server": server}
+        refused = error(put("/api/trackers/doors/natnet", json=wish), *BAD)
+        assert refused["message"] == f"{server} is not the address of a computer"
+        assert (refused["value"], bool(refused["remedy"])) == (server, True)
+        ok(put("/api/trackers/doors/natnet", json={**wish, "is_open": False}))
+
+
+@pytest.mark.one_engine
+def test_two_of_our_own_doors_never_have_one_port(open_lab: Lab) -> None:
+    """The second is refused while the first is open, which keeps its port; also Motive's group."""
+    put, port = open_lab.operator.put, free_udp_port()
+    assert open_door(open_lab, "json", port=port)["state"] == "open"
+    body = {"is_open": True, "port": port, "interface": HERE}
+    refused = error(put("/api/trackers/doors/osc", json=body), *BAD)
+    assert refused["message"] == "door json has this port"
+    assert (refused["value"], refused["remedy"]) == (port, REMEDY)
+    ok(put("/api/trackers/doors/osc", json={**body, "is_open": False}))
+    assert open_door(open_lab, "json", port=port)["state"] == "open"
+    open_door(open_lab, "natnet", port=port, server=HERE)
+    open_door(open_lab, "natnet", port=port, server=HERE, multicast=True)
+    refused = error(put("/api/trackers/doors/osc", json={**body, "port": DATA_PORT}), *BAD)
+    assert refused["message"] == "door natnet has this port"
+    ok(put("/api/trackers/doors/json", json={**body, "is_open": False}))
+    assert open_door(open_lab, "osc", port=port)["state"] == "open"
 
 
 def _packets(view: Json) -> int:
