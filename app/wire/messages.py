@@ -6,6 +6,7 @@ session, `ack` after each commit, `resend` where it expected an earlier seq, `fl
 `refused` for a report that did not fit the session's state, and `error` before it closes.
 """
 
+import math
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
@@ -27,12 +28,14 @@ GOALS = ("Hips", "Head", "LeftHand", "RightHand", "LeftLowerLeg", "RightLowerLeg
 
 
 def _number(value: object) -> object:
-    """Return what is no truth value and no text, which would be taken for a number otherwise.
+    """Return what is no truth value and no text, which would be taken for a number, and finite.
 
     1.0 is as good as 1: JSON does not tell them apart, and many clients know doubles only.
     """
     if isinstance(value, bool | str):
         raise ValueError("must be a number, not true, false or a text")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError("must be a finite number")
     return value
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 from app.protocol.avatar import check_pieces
 from app.protocol.avatar_editing.axis_operations import ConvertTemplate
@@ -69,14 +70,18 @@ def edited(
         versions: gives the saved versions that `load` names.
     """
     present, lost = configuration, list[Loss]()
+    version = cache(versions)
     for at, operation in enumerate(operations):
         try:
-            known = operation.resolved(versions) if isinstance(operation, Load) else operation
-            after = known.applied(present)
+            after = (
+                operation.taken(present, operation.source(version))
+                if isinstance(operation, Load)
+                else operation.applied(present)
+            )
         except AvatarSettingsError as error:
             problems = tuple(OperationProblem(at, one) for one in error.problems)
             return Edited(configuration, problems=problems)
-        if isinstance(operation, ConvertTemplate):
+        if isinstance(operation, ConvertTemplate) and after != present:
             lost += _losses(at, present, after)
         present = after
     try:

@@ -11,7 +11,6 @@ from app.protocol.avatar import (
     HumanoidHash,
     Percent,
     configuration_of,
-    file_of,
 )
 from app.protocol.avatar_changes import AxisName, BodyGroup, Layer
 from app.protocol.avatar_editing.operation import (
@@ -222,8 +221,8 @@ class Load(AvatarOperation):
     targets: Groups | None = None
     what: Aspects = ("gains", "limits")
 
-    def resolved(self, versions: Versions) -> "Load":
-        """Return the operation with its configuration; raise AvatarSettingsError."""
+    def source(self, versions: Versions) -> Configuration:
+        """Return the configuration that is loaded; raise AvatarSettingsError."""
         if (self.key is None) == (self.configuration is None):
             raise problem(
                 "key",
@@ -234,16 +233,19 @@ class Load(AvatarOperation):
                 valid=["key", "configuration"],
                 remedy="Give the key of a saved avatar, or a configuration.",
             )
-        if self.key is None:
-            return self
-        file = file_of(versions(self.key, self.version))
-        return self.model_copy(update={"configuration": file, "key": None, "version": None})
+        if self.key is not None:
+            return versions(self.key, self.version)
+        assert self.configuration is not None  # noqa: S101 - one of the two is given
+        return configuration_of(self.configuration)
 
     def applied(self, configuration: Configuration) -> Configuration:
-        """Return the other configuration, or take what is asked for from it."""
+        """Return the configuration given here, or take what is asked for from it."""
         if self.configuration is None:
             raise problem("key", "The saved version is not known here.", value=self.key)
-        source = configuration_of(self.configuration)
+        return self.taken(configuration, configuration_of(self.configuration))
+
+    def taken(self, configuration: Configuration, source: Configuration) -> Configuration:
+        """Return the source, or the configuration with what is asked for from the source."""
         if self.targets is None:
             return source
         return reset(configuration, source, group=self.targets, aspects=self.what)

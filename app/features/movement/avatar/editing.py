@@ -21,6 +21,7 @@ from app.features.movement.avatar.service import (
     version_of,
 )
 from app.features.movement.avatar.views import version_view
+from app.features.movement.humanoids import is_known
 from app.protocol.avatar import configuration_of, file_of, loaded
 from app.protocol.avatar_editing import (
     Edited,
@@ -79,7 +80,8 @@ def edit(db: Session, request: AvatarEdit) -> AvatarEdited:
             fits_single_template=False,
         )
     done = edited(before, request.operations, saved_versions(db))
-    if done.configuration.humanoid != before.humanoid:
+    humanoid = done.configuration.humanoid
+    if humanoid != before.humanoid or (humanoid is not None and not is_known(db, humanoid)):
         unworn = tuple(
             OperationProblem(None, one) for one in unknown_humanoid(db, done.configuration)
         )

@@ -13,7 +13,8 @@ from app.protocol.avatar_joints import JointView
 
 MAX_FILE_CHARACTERS = 262_144
 MAX_VERSION = 1_000_000
-MAX_OPERATIONS = 1_000
+MAX_OPERATIONS = 200
+"""The page sends one edit at a time; so many take a second or two."""
 
 Origin = Literal["shipped", "tuned", "by_hand", "loaded"]
 Made = Literal["tuned", "by_hand", "loaded"]
@@ -27,7 +28,7 @@ class NewAvatarVersion(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    based_on: Annotated[int, Field(ge=0, le=MAX_VERSION)]
+    based_on: Annotated[int, Field(strict=True, ge=0, le=MAX_VERSION)]
     origin: Made
     note: Note = ""
     configuration: AvatarFile
@@ -50,8 +51,8 @@ class BoxToDrop(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    edge_m: Annotated[float, Field(ge=0.05, le=1, allow_inf_nan=False)] = 0.2
-    mass_kg: Annotated[float, Field(ge=0.1, le=50, allow_inf_nan=False)] = 2.0
+    edge_m: Annotated[float, Field(strict=True, ge=0.05, le=1, allow_inf_nan=False)] = 0.2
+    mass_kg: Annotated[float, Field(strict=True, ge=0.1, le=50, allow_inf_nan=False)] = 2.0
 
 
 class ModelToTry(BaseModel):
@@ -63,7 +64,7 @@ class ModelToTry(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     configuration: AvatarFile
-    stature_m: Annotated[float, Field(ge=0.5, le=2.6, allow_inf_nan=False)]
+    stature_m: Annotated[float, Field(strict=True, ge=0.5, le=2.6, allow_inf_nan=False)]
     box: BoxToDrop | None = None
 
 

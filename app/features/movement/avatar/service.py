@@ -109,8 +109,9 @@ def add_avatar_version(
 ) -> AvatarVersion:
     """Append a version, or return the newest one if it is the same: a request may be sent twice.
 
-    Raises StaleVersion if somebody saved a version meanwhile, Conflict if the newest one has this
-    content and another note, which would be lost, InvalidConfig, NotFound.
+    Raises InvalidInput if it is based on a version that there is not, StaleVersion if somebody
+    saved one meanwhile, Conflict if the newest one has this content and another note, which would
+    be lost, InvalidConfig, NotFound.
     """
     content = _buildable(db, request.configuration)
     avatar = avatar_by_key(db, key, lock=True)
@@ -125,6 +126,13 @@ def add_avatar_version(
             valid=newest.note,
             remedy="Use that version, whose note stays as it is; or save with the note what changes"
             " something.",
+        )
+    if request.based_on > newest.number:
+        raise InvalidInput(
+            f"the avatar {key!r} has no version {request.based_on}",
+            value=request.based_on,
+            valid=f"1 to {newest.number}",
+            remedy="Give the version that the settings were edited from. Nothing was saved.",
         )
     if request.based_on != newest.number:
         raise StaleVersion(

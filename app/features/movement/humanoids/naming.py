@@ -10,7 +10,12 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput
-from app.features.movement.humanoids.licences import asked_terms, confirmed_with, licence_is_read
+from app.features.movement.humanoids.licences import (
+    asked_terms,
+    confirmed_with,
+    licence_is_read,
+    term_of,
+)
 from app.features.movement.humanoids.schemas import BodyChange, BodyTitle, Term
 from app.features.movement.humanoids.service import humanoid_by_hash
 from app.features.people.audit import record
@@ -30,7 +35,8 @@ def change_body(
 ) -> None:
     """Name a body, retitle it, or confirm terms of its licence; all of it or nothing.
 
-    Raises NotFound, InvalidInput if the name is reserved, and Conflict if the body has another name
+    Raises NotFound, InvalidInput if the name is reserved or the licence does not ask for a term
+    (one that was confirmed before may be repeated), and Conflict if the body has another name
     already, if another body has the name, or if its licence must be read or confirmed first.
     """
     row = humanoid_by_hash(db, content_hash, lock=True)
@@ -62,6 +68,14 @@ def require_confirmed(row: HumanoidRow) -> None:
 
 
 def _confirm(db: Session, actor: str, row: HumanoidRow, terms: list[Term], now: datetime) -> None:
+    for term in terms:
+        if term != term_of(row):
+            raise InvalidInput(
+                f"the licence of this body does not ask for {term!r}",
+                value=term,
+                valid=[one for one in (term_of(row),) if one is not None],
+                remedy="Confirm only what `asked` names; nothing was stored.",
+            )
     asked = asked_terms(row)
     new = tuple(term for term in asked if term in terms)
     if not new:

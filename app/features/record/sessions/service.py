@@ -125,6 +125,7 @@ def _compiled(
 
 
 MAX_TIME_SCALE = 100.0
+_OTHER_LANGUAGE = "Choose one of the languages of the study."
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,10 @@ def choose_language(db: Session, context: AppContext, session: StudySession, lan
     valid = protocol_of_session(db, session).languages
     if language not in valid:
         raise InvalidInput(
-            f"the study has no texts in {language!r}", value=language, valid=list(valid)
+            f"the study has no texts in {language!r}",
+            value=language,
+            valid=list(valid),
+            remedy=_OTHER_LANGUAGE,
         )
     if language == session.language:
         return
@@ -231,18 +235,25 @@ def _avatar_hash(db: Session, protocol: StudyProtocol) -> str | None:
 
 def _check_join(protocol: StudyProtocol, kind: str, language: str, time_scale: float) -> None:
     if kind not in KINDS:
-        raise InvalidInput(f"unknown kind {kind!r}", value=kind, valid=list(KINDS))
+        raise InvalidInput(
+            f"unknown kind {kind!r}",
+            value=kind,
+            valid=list(KINDS),
+            remedy="Name one of these kinds.",
+        )
     if language not in protocol.languages:
         raise InvalidInput(
             f"the study has no texts in {language!r}",
             value=language,
             valid=list(protocol.languages),
+            remedy=_OTHER_LANGUAGE,
         )
     if not 0 < time_scale <= MAX_TIME_SCALE:
         raise InvalidInput(
             "time_scale is out of range",
             value=time_scale,
             valid=f"above 0, at most {MAX_TIME_SCALE}",
+            remedy="Give a number in that range, or leave time_scale out for real time.",
         )
     if time_scale != 1.0 and kind != "simulated":
         raise InvalidInput(

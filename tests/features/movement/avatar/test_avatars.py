@@ -142,6 +142,14 @@ def test_a_note_is_never_dropped(fresh_lab: Lab) -> None:
     assert ok(fresh_lab.operator.post(path, json=body | {"note": "mine"})) == first
     refusal = error(fresh_lab.operator.post(path, json=body | {"note": "yours"}), 409, "conflict")
     assert (refusal["value"], refusal["valid"]) == ("yours", "mine")
+    later = {**body, "based_on": 99, "configuration": as_json(SHIPPED)}
+    refusal = error(fresh_lab.operator.post(path, json=later), 422, "invalid_input")
+    assert refusal["message"] == "the avatar 'soft' has no version 99"
+    assert (refusal["valid"], bool(refusal["remedy"])) == ("1 to 2", True)
+    for wrong in (True, "1.7"):
+        trial = {"configuration": as_json(SHIPPED), "stature_m": wrong}
+        refusal = error(fresh_lab.operator.post(f"{PATH}/model", json=trial), 422, "invalid_input")
+        assert refusal["details"][0]["path"] == "stature_m"
     assert len(ok(fresh_lab.operator.get(f"{PATH}/soft"))["versions"]) == 2
 
 

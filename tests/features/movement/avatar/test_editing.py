@@ -1,11 +1,15 @@
 """Tests of editing avatar configurations over HTTP: operations, what they change and lose."""
 
 import json
+from dataclasses import replace
 
 import pytest
+from pydantic import TypeAdapter
 
+from app.features.movement.avatar.schemas import MAX_OPERATIONS
 from app.features.movement.avatar.service import shipped_configurations
 from app.protocol.avatar import file_of, load_avatar, loaded
+from app.protocol.avatar_editing import Operation, edited
 from app.science.avatar.configuration import Configuration, lock, mirrored, with_global
 from app.science.avatar.mjcf import default_configuration
 from tests.api.people import sign_in
@@ -55,6 +59,34 @@ def test_operations_change_a_configuration_and_store_nothing(fresh_lab: Lab) -> 
     assert len(answer["changed"]) == 2 * 9 + 1
     (standard,) = ok(fresh_lab.operator.get("/api/avatars"))
     assert standard["versions"] == 2
+
+
+def test_a_saved_version_is_read_once_however_often_it_is_loaded() -> None:
+    """Reading and checking it for each of many operations would keep a server busy."""
+    read: list[tuple[str, int | None]] = []
+
+    def saved(key: str, number: int | None) -> Configuration:
+        read.append((key, number))
+        return lock(SHIPPED, "LeftHand")
+
+    whole, arm = ({"operation": "load", "key": "standard"} | one for one in ({}, {"version": 1}))
+    operations = TypeAdapter(list[Operation]).validate_python([whole, arm] * 3)
+    assert edited(SHIPPED, operations, saved).configuration == lock(SHIPPED, "LeftHand")
+    assert read == [("standard", None), ("standard", 1)]
+
+
+@pytest.mark.one_engine
+def test_an_unknown_body_and_too_many_operations_are_told(fresh_lab: Lab) -> None:
+    """A body that is not here is a problem before an edit is saved; a long list is refused."""
+    post = fresh_lab.operator.post
+    answer = ok(post(PATH, json=body(replace(SHIPPED, humanoid="0" * 64))))
+    (problem,) = answer["problems"]
+    assert (problem["path"], problem["value"]) == ("humanoid", "0" * 64)
+    load = {"operation": "load", "key": "standard"}
+    refused = error(
+        post(PATH, json=body(SHIPPED, *[load] * (MAX_OPERATIONS + 1))), 422, "invalid_input"
+    )
+    assert str(MAX_OPERATIONS) in refused["details"][0]["message"]
 
 
 @pytest.mark.one_engine

@@ -124,6 +124,11 @@ def test_a_licence_that_restricts_wearing_must_be_confirmed(fresh_lab: Lab) -> N
     }
     worn = error(fresh_lab.operator.post(AVATARS, json=body), 422, "invalid_config")
     assert worn["details"][0]["path"] == "configuration.humanoid"
+    not_asked = {"name": "strict", "confirmed": ["only_licensed_people"]}
+    refusal = error(
+        fresh_lab.operator.patch(f"{PATH}/{HASH}", json=not_asked), 422, "invalid_input"
+    )
+    assert (refusal["value"], refusal["valid"]) == ("only_licensed_people", ["only_author"])
     view = change(fresh_lab, name="strict", confirmed=["only_author"])
     assert (view["name"], view["asked"]) == ("strict", [])
     assert [one["term"] for one in view["confirmations"]] == ["only_author"]
