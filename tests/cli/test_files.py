@@ -36,6 +36,9 @@ READ: dict[str, tuple[str, ...]] = {
     "rehearse capture": ("--capture", MISSING),
     "pilot power assumptions": ("reembodiment-latency", "--assumptions", MISSING),
     "pilot merge records": (MISSING,),
+    "pilot merge assumptions": ("cohort.jsonl", "--assumptions", MISSING),
+    "pilot cohort assumptions": ("reembodiment-latency", "--assumptions", MISSING),
+    "pilot check scene": ("reembodiment-latency", "--scene", MISSING),
     "tracking align headset": (MISSING, MISSING),
     "tracking align tracker": ("head.csv", MISSING),
     "tracking align move": ("head.csv", "head.csv", "--move", MISSING, "--out", "moved.csv"),
@@ -52,6 +55,7 @@ ALIKE = {
     "walk evaluate walks",
     "walk evaluate people",
     "restore erasures",
+    "pilot merge assumptions",
 }
 WRITTEN = {
     "export to",
@@ -66,6 +70,7 @@ WRITTEN = {
     "walk fit out",
     "rehearse data",
     "pilot power out",
+    "pilot cohort out",
     "crossing run out",
     "tracking align out",
 }

@@ -55,7 +55,7 @@ def cohort(
     """Simulate whole visits: reach, completions, contacts, length, storage and power."""
     from app.cli.pilot.cohort import CohortOrder, carry_out_cohort
     from app.cli.pilot.cohort_report import full_report, report_json, report_text
-    from app.cli.pilot.inputs import read_avatar, read_shard
+    from app.cli.pilot.inputs import read_assumptions, read_avatar, read_shard, read_study
 
     with reported(ValueError, OSError), Activity(f"simulating {study}: reading it") as now:
         order = CohortOrder(
@@ -67,6 +67,9 @@ def cohort(
             out=out,
             avatar=read_avatar(avatar),
         )
+        if assumptions is not None:
+            # A mistake in this file is reported before the work, not after it.
+            read_assumptions(assumptions, read_study(study))
         file, people = carry_out_cohort(order, now.now)
         report = full_report(file, people, assumptions, workers, now.now)
     print(report_json(report) if as_json else report_text(report))
