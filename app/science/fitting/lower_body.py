@@ -173,8 +173,10 @@ def _toe(marks: Landmarks, letter: str) -> tuple[FloatArray, tuple[str, ...]] | 
 def _missing_markers(part: str, marks: Landmarks, needed: str) -> str:
     labels = ", ".join(marks.names[:8]) + (", ..." if len(marks.names) > 8 else "")
     recognised = ", ".join(marks.markers.values()) or "none"
+    never = [name for landmark, name in marks.markers.items() if not marks.has(landmark)]
+    unseen = f" {', '.join(never)} are labelled but were never seen." if never else ""
     return (
         f"No skeleton can be fitted to these {len(marks.names)} markers ({labels}): {part} needs"
         f" {needed}, labelled as in a known marker set (the closest is {marks.set.title})."
-        f" Recognised: {recognised}."
+        f" Recognised: {recognised}.{unseen}"
     )

@@ -175,6 +175,15 @@ def test_a_marker_set_without_toes_is_refused_by_name() -> None:
         fit_skeleton(_renamed(markers, {"LTOE": "X1", "RTOE": "X2"}))
 
 
+def test_markers_that_are_labelled_but_never_seen_are_named() -> None:
+    """A foot whose labels exist but whose markers were never seen is told apart from none."""
+    markers = markers_on(moving(5))
+    places = markers.positions_m.copy()
+    places[:, [markers.names.index(name) for name in ("LANK", "LTOE")]] = np.nan
+    with pytest.raises(FitError, match="LANK, LTOE are labelled but were never seen"):
+        fit_skeleton(replace(markers, positions_m=places))
+
+
 @pytest.mark.parametrize("name", _CAPTURES)
 def test_captured_people_are_not_changed(shared_data: Path, name: str) -> None:
     """No capture of a person is noticed, and every mirrored one is, with the same bones."""
