@@ -26,6 +26,8 @@ MORE = (
     "tracker_alignments",
     "calibrations",
     "headset_tests",
+    "wide",
+    "wide_columns",
     "codebook",
 )
 FILES = {*(f"{name}.csv" for name in (*TABLES, *MORE)), "README.txt"}

@@ -26,6 +26,7 @@ from app.features.results.analysis.codebook.quality import ALARMS, DOUBTS, QUALI
 from app.features.results.analysis.codebook.questionnaires import ANSWERS, CORRECTIONS, SCORES
 from app.features.results.analysis.codebook.sessions import EVENTS, PHASES, SESSIONS
 from app.features.results.analysis.codebook.trackers import TRACKER_ALIGNMENTS, TRACKER_SAMPLES
+from app.features.results.analysis.codebook.wide import WIDE, WIDE_COLUMNS
 from app.science.skeleton import FINGER_PARTS, JOINT_NAMES
 
 _B = Describe("codebook")
@@ -48,6 +49,8 @@ TABLES: dict[str, str] = {
     "body_calibrations": "One row per calibration of a headset to the participant, and part.",
     "tracker_alignments": "One row per alignment of the lab's trackers with a headset, or its end.",
     "events": "One row per event of a session's log: the audit trail.",
+    "wide": "One row per participant who counts; wide_columns.csv describes the columns of values.",
+    "wide_columns": "One row per column of values in wide.csv.",
     "calibrations": "One row per measurement of the equipment's own delay; of no one session.",
     "headset_tests": "One row per self-test of a headset and figure; of no one session.",
     "codebook": "One row per column of the other files.",
@@ -76,6 +79,8 @@ CODEBOOK: tuple[Column, ...] = (
     *BODY_CALIBRATIONS,
     *TRACKER_ALIGNMENTS,
     *EVENTS,
+    *WIDE,
+    *WIDE_COLUMNS,
     *CALIBRATIONS,
     *HEADSET_TESTS,
     _B.text(

@@ -47,7 +47,7 @@ def csv_pieces_of_many(
 
 
 def plain_pieces(names: Sequence[str], rows: Iterator[Sequence[Any]]) -> Iterator[bytes]:
-    """Yield a table whose columns are not in the codebook, in the same way.
+    """Yield a table whose columns depend on the study, in the same way.
 
     Texts and booleans are recognised by their values; everything else is a number.
     """

@@ -210,9 +210,9 @@ class Contents:
         wide = wide_table(self.db, self.study_key, self.kind)
         rows = wide.frame[wide.names].itertuples(index=False, name=None)
         yield self._member("wide.csv", plain_pieces(wide.names, rows))
-        meanings = [one.name for one in fields(WideColumn)]
-        described = iter([astuple(column) for column in wide.columns])
-        yield self._member("wide_columns.csv", plain_pieces(meanings, described))
+        names = [one.name for one in fields(WideColumn)]
+        described = pd.DataFrame(map(astuple, wide.columns), columns=names)
+        yield self._member("wide_columns.csv", csv_pieces("wide_columns", described))
 
     def _protocol(self, study: Study, used: set[int]) -> dict[str, str]:
         """Return the files of each version in use, and of its instruments: wording and formulas."""
