@@ -12,8 +12,10 @@ from sqlalchemy import ColumnElement, Table, delete, or_, select
 from sqlalchemy.orm import Session
 
 from app.database import Base
+from app.errors import Conflict
 from app.features.design.studies import shipped_files
-from app.models import Study
+from app.models import AuditEntry, Participant, Study, StudySession
+from app.platform.access import Caller, visible_to
 
 DEMO_KEY = "demo-lab"
 ORIGIN = "reembodiment-latency"
@@ -65,6 +67,59 @@ def shortened(origin: Path) -> str:
             step[pause] = PAUSE_S
     text: str = yaml.safe_dump(study, allow_unicode=True, sort_keys=False)
     return text
+
+
+LOADED = "demo.loaded"
+"""The action in the audit trail that marks a study as made by the demo lab, at the same instant."""
+
+
+def own_study(db: Session, caller: Caller) -> Study | None:
+    """Return the study that the demo lab made, or None if there is no study with its key.
+
+    Raises Conflict if somebody else made the study with this key, or if the caller may not see it.
+    """
+    study = db.scalar(select(Study).where(Study.key == DEMO_KEY))
+    if study is None:
+        return None
+    if db.scalar(select(Study.id).where(Study.id == study.id, visible_to(caller))) is None:
+        raise Conflict(
+            "the demo lab is not possible here",
+            remedy="Ask somebody of the lab who may see all studies.",
+        )
+    made = select(AuditEntry.seq).where(
+        AuditEntry.action == LOADED,
+        AuditEntry.subject == DEMO_KEY,
+        AuditEntry.at == study.created_at,
+    )
+    if db.scalar(made.limit(1)) is None:
+        raise Conflict(
+            f"the study {DEMO_KEY!r} was not made by the demo lab",
+            value=DEMO_KEY,
+            valid="no study with this key, or the demo lab's own",
+            remedy="The demo lab needs this key. Work with the study as with any other; it is "
+            "neither filled nor removed from here.",
+        )
+    return study
+
+
+def require_only_simulated(db: Session, study: Study) -> None:
+    """Raise Conflict if a session of the study is not simulated, or others run one there."""
+    rows = db.execute(
+        select(StudySession.kind, StudySession.status, Participant.code)
+        .join(Participant, Participant.id == StudySession.participant_id)
+        .where(StudySession.study_id == study.id)
+    ).all()
+    own = {demo_code(number) for number in range(1, PEOPLE + 1)}
+    people = sum(kind != "simulated" for kind, _, _ in rows)
+    running = sum(status == "active" and code not in own for _, status, code in rows)
+    if people or running:
+        raise Conflict(
+            "the demo lab has sessions that it did not make, so it is not removed",
+            value={"not_simulated": people, "running": running},
+            valid="only simulated sessions, and none that others run",
+            remedy="End the running ones. A study with sessions of people or tests keeps its "
+            "record: archive it, or erase single participants.",
+        )
 
 
 def remove_study(db: Session, study: Study) -> int:

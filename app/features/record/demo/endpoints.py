@@ -28,9 +28,9 @@ class DemoRemoved(BaseModel):
 
 
 @router.get("/demo")
-def get_demo(context: Context, _: SignedIn) -> DemoView:
+def get_demo(context: Context, caller: SignedIn) -> DemoView:
     """Return how many simulated people of the demo lab are through."""
-    return context.part(DemoRunner).view()
+    return context.part(DemoRunner).view(caller)
 
 
 @router.post("/demo", status_code=202)

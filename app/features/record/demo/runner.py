@@ -13,7 +13,7 @@ from datetime import datetime
 from typing import Any, Literal, Self
 
 from pydantic import BaseModel
-from sqlalchemy import select
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.clock import Clock
@@ -24,10 +24,13 @@ from app.features.people.accounts import issue_token, revoke_token
 from app.features.people.audit import record
 from app.features.record.demo.demo_study import (
     DEMO_KEY,
+    LOADED,
     PEOPLE,
     demo_code,
     demo_yaml,
+    own_study,
     remove_study,
+    require_only_simulated,
 )
 from app.features.record.tryout import Performance
 from app.models import Account, Participant, Study, StudySession
@@ -50,7 +53,8 @@ class DemoView(BaseModel):
     """The demo lab: how many of its simulated people are through.
 
     `state`: `loading` while they are on their way; `stopped` if some are missing, because the
-    server stopped or somebody ended it; `failed` if they could not go on, with the reason.
+    server stopped or somebody ended it; `failed` if they could not go on, with the reason;
+    `absent` with a `message` if it cannot be loaded here.
     """
 
     state: DemoState
@@ -88,7 +92,8 @@ class DemoRunner(Part):
     def load(self, caller: Caller, language: str, url: str) -> DemoView:
         """Make the study if it is missing, and send those who have not been there yet.
 
-        Raises Conflict while they are on their way, NotDurable if no process can be started.
+        Raises Conflict while they are on their way or if the study with the demo lab's key is not
+        its own, NotDurable if no process can be started.
         """
         with self._lock:
             if self._is_loading:
@@ -133,14 +138,24 @@ class DemoRunner(Part):
                     value=str(error),
                     remedy="The server cannot start another process at the moment; try later.",
                 ) from error
-        return self.view()
+        return self.view(caller)
 
-    def view(self) -> DemoView:
-        """Return how far the demo lab is loaded."""
+    def view(self, caller: Caller) -> DemoView:
+        """Return how far the demo lab is loaded; absent, with the reason, if it is impossible."""
         with self._lock:
             loading, running = self._loading, self._is_loading
         with self.database.reading() as db:
-            exists = db.scalar(select(Study.id).where(Study.key == DEMO_KEY)) is not None
+            try:
+                exists = own_study(db, caller) is not None
+            except Conflict as refusal:
+                return DemoView(
+                    state="absent",
+                    study_key=DEMO_KEY,
+                    people=PEOPLE,
+                    completed=0,
+                    message=refusal.message,
+                    remedy=refusal.remedy,
+                )
             completed = len(_codes(db))
         message = None if loading is None or running else loading.message
         state: DemoState = (
@@ -166,20 +181,23 @@ class DemoRunner(Part):
     def remove(self, caller: Caller) -> int:
         """Stop those who are on their way, and delete the study with all of its rows.
 
-        Returns the number of deleted rows; raises NotFound if there is no demo lab.
+        Returns the number of deleted rows; raises NotFound if there is no demo lab, and Conflict if
+        the study is not its own or has sessions that it did not make.
         """
+        with self.database.reading() as db:
+            _removable(db, caller)
         self._end_visits()
         with self._lock:
             with self.database.writing() as db:
-                study = db.scalar(select(Study).where(Study.key == DEMO_KEY))
-                if study is None:
-                    raise NotFound("there is no demo lab", remedy="Load it first.")
+                study = _removable(db, caller)
+                details = {"study": DEMO_KEY, **_counts(db, study)}
                 rows = remove_study(db, study)
                 record(
                     db,
                     actor=caller.actor,
                     action="demo.removed",
                     subject=DEMO_KEY,
+                    details=details,
                     now=self.clock.utc_now(),
                 )
             self._loading = None
@@ -230,14 +248,33 @@ class DemoRunner(Part):
 
 def _prepared(db: Session, caller: Caller, now: datetime) -> list[int]:
     """Make the study if it is missing; return the numbers of the people who have yet to come."""
-    study = db.scalar(select(Study).where(Study.key == DEMO_KEY))
+    study = own_study(db, caller)
     if study is None:
         create_study(db, demo_yaml(), now)
         study = study_by_key(db, DEMO_KEY)
         add_member(db, caller, study)
-        record(db, actor=caller.actor, action="demo.loaded", subject=DEMO_KEY, now=now)
+        record(db, actor=caller.actor, action=LOADED, subject=DEMO_KEY, now=now)
     through = _codes(db)
     return [number for number in range(1, PEOPLE + 1) if demo_code(number) not in through]
+
+
+def _removable(db: Session, caller: Caller) -> Study:
+    """Return the demo lab's study if it may be removed; raise NotFound or Conflict otherwise."""
+    study = own_study(db, caller)
+    if study is None:
+        raise NotFound("there is no demo lab", remedy="Load it first.")
+    require_only_simulated(db, study)
+    return study
+
+
+def _counts(db: Session, study: Study) -> dict[str, int]:
+    """Return how many participants and sessions a study has."""
+    sessions, participants = db.execute(
+        select(
+            func.count(StudySession.id), func.count(StudySession.participant_id.distinct())
+        ).where(StudySession.study_id == study.id)
+    ).one()
+    return {"participants": participants, "sessions": sessions}
 
 
 def _codes(db: Session) -> set[str]:

@@ -19,8 +19,9 @@ export function DemoStrip(): JSX.Element | null {
   const [address] = useLocation();
   const can = usePermissions();
   const study = useCurrentStudy(address);
-  const isOfDemo = address.startsWith("/s") && study?.key === DEMO_KEY;
   const demo = useDemo(can("demo"));
+  // Absent although there is a study with its key: somebody else's, with people in it.
+  const isOfDemo = address.startsWith("/s") && study?.key === DEMO_KEY && demo?.state !== "absent";
   const load = useLoadDemo();
   const [asking, ask] = useDisclosure();
   const isLoading = demo?.state === "loading";

@@ -4,7 +4,7 @@ export const homeEn = {
   "home.first.lead": "Nobody has taken part yet. Nothing you do here can harm later data.",
   "home.demo": "Load the demo lab",
   "home.demo.body":
-    "Twelve simulated people visit a study in phases of 10 s. Figures appear in about half a minute, and you remove all of it with one click.",
+    "Twelve simulated people visit a study in phases of 10 s. The page shows how far they are; how long it takes depends on the computer. You remove all of it with one click.",
   "home.watch": "Watch a session live",
   "home.watch.body":
     "A scripted participant goes through a whole session at four times the pace. You sit at the operator's desk.",
@@ -48,7 +48,7 @@ export const homeDe: Readonly<Record<keyof typeof homeEn, string>> = {
     "Noch hat niemand teilgenommen. Nichts, was Sie hier tun, kann späteren Daten schaden.",
   "home.demo": "Demo-Labor laden",
   "home.demo.body":
-    "Zwölf simulierte Personen besuchen eine Studie in Phasen von 10 s. Nach etwa einer halben Minute gibt es Abbildungen; ein Klick entfernt alles wieder.",
+    "Zwölf simulierte Personen besuchen eine Studie in Phasen von 10 s. Die Seite zeigt, wie weit sie sind; wie lange es dauert, hängt vom Rechner ab. Ein Klick entfernt alles wieder.",
   "home.watch": "Eine Sitzung live ansehen",
   "home.watch.body":
     "Eine simulierte Person geht in vierfachem Tempo durch eine ganze Sitzung. Sie sitzen am Platz der Versuchsleitung.",

@@ -1,5 +1,6 @@
 """Tests of the demo lab: its study, its refusals, and its removal as a whole."""
 
+import json
 import time
 
 import pytest
@@ -7,9 +8,12 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.database import Base
+from app.errors import Conflict
 from app.features.design.studies import create_study, newest_version, protocol_of, study_by_key
+from app.features.people.audit import record
 from app.features.record.demo.demo_study import (
     DEMO_KEY,
+    LOADED,
     PEOPLE,
     PHASE_S,
     demo_code,
@@ -17,7 +21,7 @@ from app.features.record.demo.demo_study import (
     remove_study,
 )
 from app.features.record.demo.runner import DemoRunner
-from app.models import Account
+from app.models import Account, AuditEntry
 from app.platform.access import Caller
 from app.protocol import TIMED_KINDS, compile_plan, sequences
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
@@ -91,3 +95,60 @@ def test_a_demo_lab_that_cannot_be_loaded_says_why_and_is_removed(fresh_lab: Lab
     assert ok(lab.operator.delete("/api/demo"))["rows"] > 0
     assert ok(lab.operator.get("/api/demo"))["state"] == "absent"
     error(lab.operator.get(f"/api/studies/{DEMO_KEY}"), 404, "not_found")
+
+
+def test_a_study_that_others_made_with_the_demos_key_is_neither_filled_nor_removed(
+    fresh_lab: Lab,
+) -> None:
+    """The lab's own study of this key keeps its people: loading and removing are refused."""
+    lab = fresh_lab
+    with lab.database.writing() as db:
+        build_study(db)
+        create_study(db, demo_yaml(), NOW)
+        build_session(db, SessionSpec("P-0001"), study=DEMO_KEY)
+        before = _rows(db)
+    view = ok(lab.operator.get("/api/demo"))
+    assert view["state"] == "absent"
+    assert "was not made by the demo lab" in view["message"]
+    error(lab.operator.post("/api/demo", json={"language": "en"}), 409, "conflict")
+    refused = error(lab.operator.delete("/api/demo"), 409, "conflict")
+    assert refused["valid"]
+    assert refused["remedy"]
+    with lab.database.reading() as db:
+        assert _rows(db) == before
+
+
+def test_a_demo_lab_with_a_session_of_a_person_is_not_removed(fresh_lab: Lab) -> None:
+    """A study that the demo lab made is kept, too, once somebody took part; else it is audited."""
+    lab = fresh_lab
+    with lab.database.writing() as db:
+        build_study(db)
+        create_study(db, demo_yaml(), NOW)
+        record(db, actor="account:admin", action=LOADED, subject=DEMO_KEY, now=NOW)
+        build_session(db, SessionSpec(demo_code(1), kind="simulated"), study=DEMO_KEY)
+        account = db.query(Account).filter_by(username="admin").one()
+        caller = Caller(account.id, account.username, account.role)
+        blind = Caller(account.id, account.username, account.role, all_studies=False)
+    runner = lab.context.part(DemoRunner)
+    assert runner.view(blind).message == "the demo lab is not possible here"
+    with pytest.raises(Conflict):
+        runner.remove(blind)
+    with lab.database.writing() as db:
+        build_session(db, SessionSpec("P-0001"), study=DEMO_KEY)
+    with pytest.raises(Conflict) as refusal:
+        runner.remove(caller)
+    assert refusal.value.value == {"not_simulated": 1, "running": 0}
+
+
+def test_the_audit_trail_says_what_was_removed(fresh_lab: Lab) -> None:
+    """The entry of a removal names the study and counts its participants and sessions."""
+    lab = fresh_lab
+    with lab.database.writing() as db:
+        build_study(db)
+        create_study(db, demo_yaml(), NOW)
+        record(db, actor="account:admin", action=LOADED, subject=DEMO_KEY, now=NOW)
+        build_session(db, SessionSpec(demo_code(1), kind="simulated"), study=DEMO_KEY)
+    assert ok(lab.operator.delete("/api/demo"))["rows"] > 0
+    with lab.database.reading() as db:
+        (entry,) = db.query(AuditEntry).filter_by(action="demo.removed")
+    assert json.loads(entry.details) == {"study": DEMO_KEY, "participants": 1, "sessions": 1}
