@@ -86,7 +86,7 @@ def _download(
     with page.expect_download(timeout=PATIENCE_MS) as download:
         experimenter.press("Download (zip")
     name = download.value.suggested_filename
-    assert re.fullmatch(rf"reembody_{STUDY}_simulated_\d{{4}}-\d\d-\d\d\.zip", name)
+    assert re.fullmatch(rf"reembody_{STUDY}_simulated_tables_\d{{4}}-\d\d-\d\d\.zip", name)
     with zipfile.ZipFile(download.value.path()) as archive:
         assert archive.testzip() is None
         assert archive.read("sessions.csv").count(b"\n") == 1 + 1

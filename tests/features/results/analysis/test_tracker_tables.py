@@ -70,7 +70,7 @@ def test_alignments_and_samples_are_exported_as_they_were_stored(fresh_lab: Lab)
         }
     first, lost = table.to_dict("records")
     assert (first["change"], first["delay_s"], first["world_z_m"]) == ("first", 0.03, 3.0)
-    assert (first["drift_z_m_s"], first["foot_uncertainty_m"]) == (1e-4, 0.0004)
+    assert (first["drift_z_m_per_min"], first["foot_uncertainty_m"]) == (6e-3, 0.0004)
     assert (lost["jump_side"], lost["jump_m"], lost["jump_rad"]) == ("headset", 0.4, 0.6)
     assert (table["residual_m"].isna().tolist(), len(table)) == ([False, True], 2)
     (path,) = (one for one in members if one.startswith("trackers/"))

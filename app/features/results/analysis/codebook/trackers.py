@@ -35,7 +35,7 @@ TRACKER_ALIGNMENTS: tuple[Column, ...] = (
         for axis in "wxyz"
     ),
     *(
-        _A.number(f"drift_{axis}_m_s", f"How fast its origin moves, {axis}.", "m/s")
+        _A.number(f"drift_{axis}_m_per_min", f"How fast its origin moves, {axis}.", "m/min")
         for axis in "xyz"
     ),
     _A.number(
@@ -49,6 +49,8 @@ TRACKER_ALIGNMENTS: tuple[Column, ...] = (
 )
 
 TRACKER_SAMPLES: tuple[Column, ...] = (
+    _T.boolean("simulated", "Whether a simulation made the data."),
+    _T.text("avatar", "How the body that the participant saw was moved.", "delayed_copy, physics"),
     _T.text(
         "door",
         "The door through which it came; headset: where the headset says that the eyes are.",

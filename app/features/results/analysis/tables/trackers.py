@@ -17,6 +17,7 @@ from app.models import StudySession, TrackerAlignment, TrackerChunk
 
 _WORLD = (*(f"world_{axis}_m" for axis in "xyz"), *(f"world_q{axis}" for axis in "wxyz"))
 _NS_PER_S = 1e9
+_S_PER_MIN = 60.0
 
 
 def tracker_alignments_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
@@ -56,7 +57,10 @@ def _alignment(row: TrackerAlignment) -> dict[str, Any]:
         "foot_uncertainty_m": quality.get("uncertainty_m"),
         "outliers": quality.get("outliers"),
         **dict(zip(_WORLD, world, strict=True)),
-        **{f"drift_{axis}_m_s": one for axis, one in zip("xyz", drift, strict=True)},
+        **{
+            f"drift_{axis}_m_per_min": None if one is None else one * _S_PER_MIN
+            for axis, one in zip("xyz", drift, strict=True)
+        },
         "reference_client_t_s": found.get("reference_s"),
         "jump_side": jump.get("side"),
         "jump_m": jump.get("offset_m"),
@@ -70,10 +74,13 @@ def has_tracker_samples(db: Session, session_id: str) -> bool:
     return db.scalar(query) is not None
 
 
-def tracker_samples(db: Session, session_id: str) -> Iterator[pd.DataFrame]:
+def tracker_samples(
+    db: Session, session_id: str, *, simulated: bool, avatar: str
+) -> Iterator[pd.DataFrame]:
     """Yield what trackers and the headset's head sent for a session, in pieces of about a second.
 
-    The columns are those of the codebook's table `trackers`.
+    The columns are those of the codebook's table `trackers`. `simulated` and `avatar` are the
+    session's, which every table repeats.
     """
     query = (
         select(TrackerChunk)
@@ -86,6 +93,8 @@ def tracker_samples(db: Session, session_id: str) -> Iterator[pd.DataFrame]:
         late_ns = np.round((found.arrival_s - row.first_s) * _NS_PER_S).astype("int64")
         yield pd.DataFrame(
             {
+                "simulated": simulated,
+                "avatar": avatar,
                 "door": row.door,
                 "source": row.source,
                 "tracker": np.array(found.trackers, dtype=object)[found.tracker],

@@ -190,8 +190,9 @@ class Contents:
             fingers = replace(samples, fingers=True)
             yield self._member(fingers_path(code, session_id), fingers.pieces())
         if has_tracker_samples(self.db, session_id):
-            sent = csv_pieces_of_many("trackers", tracker_samples(self.db, session_id))
-            yield self._member(trackers_path(code, session_id), sent)
+            sent = tracker_samples(self.db, session_id, simulated=simulated, avatar=avatar)
+            pieces = csv_pieces_of_many("trackers", sent)
+            yield self._member(trackers_path(code, session_id), pieces)
 
     def _table(
         self, name: str, table: Callable[[Session, str, Kind], pd.DataFrame]
