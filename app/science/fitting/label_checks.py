@@ -24,6 +24,8 @@ from app.science.rotations import FloatArray
 
 _CROSSED = -0.15
 """Cosine of the ankles' left-to-right with the pelvis' below which the feet are exchanged."""
+_ANKLES_SEEN = 0.5
+"""Share of the frames that must show both ankles: in fewer, one posture may cross the feet."""
 _SEGMENTS = (
     ("LASI", "RASI"), ("LKNE", "LANK"), ("RKNE", "RANK"), ("LHEE", "LTOE"), ("RHEE", "RTOE"),
     ("LELB", "LWRA"), ("RELB", "RWRA"),
@@ -75,8 +77,9 @@ def label_notice(marks: Landmarks) -> Notice | None:
     order = {"knees": _cosine(marks["RKNE"] - marks["LKNE"], right)}
     if marks.has("LACR", "RACR"):
         order["shoulders"] = _cosine(marks["RACR"] - marks["LACR"], right)
-    ankles = _cosine(marks["RANK"] - marks["LANK"], right)
-    if ankles < _CROSSED:
+    between = marks["RANK"] - marks["LANK"]
+    seen, ankles = np.isfinite(between).all(axis=-1).mean(), _cosine(between, right)
+    if ankles < _CROSSED and seen >= _ANKLES_SEEN:
         order["feet"] = ankles
     for part, cosine in order.items():
         if cosine < 0.0:

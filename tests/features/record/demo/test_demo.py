@@ -118,14 +118,19 @@ def test_a_study_that_others_made_with_the_demos_key_is_neither_filled_nor_remov
         assert _rows(db) == before
 
 
+def _load_one(db: Session) -> None:
+    """Store the demo lab's own study with one simulated session."""
+    build_study(db)
+    create_study(db, demo_yaml(), NOW)
+    record(db, actor="account:admin", action=LOADED, subject=DEMO_KEY, now=NOW)
+    build_session(db, SessionSpec(demo_code(1), kind="simulated"), study=DEMO_KEY)
+
+
 def test_a_demo_lab_with_a_session_of_a_person_is_not_removed(fresh_lab: Lab) -> None:
     """A study that the demo lab made is kept, too, once somebody took part; else it is audited."""
     lab = fresh_lab
     with lab.database.writing() as db:
-        build_study(db)
-        create_study(db, demo_yaml(), NOW)
-        record(db, actor="account:admin", action=LOADED, subject=DEMO_KEY, now=NOW)
-        build_session(db, SessionSpec(demo_code(1), kind="simulated"), study=DEMO_KEY)
+        _load_one(db)
         account = db.query(Account).filter_by(username="admin").one()
         caller = Caller(account.id, account.username, account.role)
         blind = Caller(account.id, account.username, account.role, all_studies=False)
@@ -144,10 +149,7 @@ def test_the_audit_trail_says_what_was_removed(fresh_lab: Lab) -> None:
     """The entry of a removal names the study and counts its participants and sessions."""
     lab = fresh_lab
     with lab.database.writing() as db:
-        build_study(db)
-        create_study(db, demo_yaml(), NOW)
-        record(db, actor="account:admin", action=LOADED, subject=DEMO_KEY, now=NOW)
-        build_session(db, SessionSpec(demo_code(1), kind="simulated"), study=DEMO_KEY)
+        _load_one(db)
     assert ok(lab.operator.delete("/api/demo"))["rows"] > 0
     with lab.database.reading() as db:
         (entry,) = db.query(AuditEntry).filter_by(action="demo.removed")
