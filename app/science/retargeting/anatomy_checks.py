@@ -123,7 +123,8 @@ def stature_notice(leg_length_m: float | None) -> Notice | None:
     stature_m = leg_length_m / (PUBLISHED["thigh"] + PUBLISHED["shank"])
     if _SMALLEST_WALKER_M <= stature_m <= _HIGHEST_STATURE_M:
         return None
-    lowest_m = _SMALLEST_WALKER_M if stature_m >= _LOWEST_STATURE_M else _LOWEST_STATURE_M
+    small = _LOWEST_STATURE_M <= stature_m < _SMALLEST_WALKER_M
+    lowest_m = _SMALLEST_WALKER_M if small else _LOWEST_STATURE_M
     return Notice(
         "length",
         "noted",
