@@ -8,7 +8,7 @@ from starlette.websockets import WebSocket
 
 from app.errors import InvalidInput, TakenOver
 from app.features.record.headset import next_message, until_one_ends
-from app.features.record.lab_trackers.service import LabTrackers
+from app.features.record.lab_trackers.service import LabTrackers, Wake
 from app.features.record.telemetry import TelemetryWriter
 from app.platform.context import AppContext
 from app.platform.tokens import device_of_token
@@ -65,7 +65,7 @@ class TrackerSocket:
                 ) from error
             trackers.take_head(self.session_id, head.poses)
 
-    async def _send(self, trackers: LabTrackers, wake: object) -> None:
+    async def _send(self, trackers: LabTrackers, wake: Wake) -> None:
         self._news.set()
         while True:
             try:
@@ -74,7 +74,7 @@ class TrackerSocket:
             except TimeoutError:
                 await asyncio.to_thread(self._require_pairing)
             self._news.clear()
-            if not trackers.is_attached(self.session_id, wake):  # type: ignore[arg-type]
+            if not trackers.is_attached(self.session_id, wake):
                 raise TakenOver(
                     "another page of this headset takes the trackers now",
                     remedy="Continue there, and close this page; to continue here, reload it.",
