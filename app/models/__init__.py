@@ -1,6 +1,7 @@
 """The database tables, one family per file. Importing this package registers them all."""
 
 from app.models.accounts import (
+    PURPOSES,
     ROLES,
     Account,
     AuditEntry,
@@ -45,6 +46,7 @@ from app.models.walking import WalkingModelRow, WalkingScene, WalkSetRow
 
 __all__ = [
     "KINDS",
+    "PURPOSES",
     "ROLES",
     "Account",
     "AlarmRow",

@@ -10,6 +10,8 @@ from app.database import Base
 from app.models.types import Id, UtcDateTime, UtcTime
 
 ROLES = ("admin", "experimenter", "operator", "analyst")
+PURPOSES = ("browser", "script", "demo", "tryout")
+"""Of logins; those of `demo` and `tryout` belong to processes that end with the server."""
 
 
 class Account(Base):

@@ -50,6 +50,7 @@ from app.features.record.sessions import (
 )
 from app.models import (
     KINDS,
+    PURPOSES,
     ROLES,
     Account,
     AlarmRow,
@@ -79,7 +80,7 @@ _UNBOUNDED = {(Ledger.__tablename__, "seed")}
 """Integer columns of any size: a study file may have any seed, and SQLite stores it."""
 _WORDS: Mapping[Any, Collection[str]] = {
     Account.role: ROLES,
-    LoginToken.purpose: ("browser", "script"),
+    LoginToken.purpose: PURPOSES,
     PairingCode.kind: ("tablet", "headset"),
     Participant.kind: KINDS,
     StudySession.status: tuple(map(str, SessionStatus)),

@@ -8,6 +8,7 @@ from app.features.people.accounts.service import (
     ensure_admin,
     is_username,
     issue_token,
+    revoke_purpose,
     revoke_token,
 )
 
@@ -18,6 +19,7 @@ __all__ = [
     "is_hash",
     "is_username",
     "issue_token",
+    "revoke_purpose",
     "revoke_token",
     "set_studies",
 ]

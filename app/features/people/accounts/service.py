@@ -8,7 +8,7 @@ import secrets
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from sqlalchemy import func, select
+from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotSignedIn
@@ -106,7 +106,7 @@ def require_password(account: Account | None, password: str) -> Account:
 def issue_token(
     db: Session, account: Account, *, purpose: str, now: datetime, hours: float
 ) -> Login:
-    """Issue a login token for an account; `purpose` is browser or script."""
+    """Issue a login token for an account; `purpose` is one of `PURPOSES`."""
     token = secrets.token_urlsafe(32)
     expires_at = now + timedelta(hours=hours)
     db.add(
@@ -127,6 +127,17 @@ def revoke_token(db: Session, token: str, now: datetime) -> None:
     row = db.get(LoginToken, hash_token(token))
     if row is not None and row.revoked_at is None:
         row.revoked_at = now
+
+
+def revoke_purpose(db: Session, purpose: str, now: datetime) -> None:
+    """End all logins of a purpose, such as those of processes that ended with the server."""
+    unended = LoginToken.revoked_at.is_(None)
+    db.execute(
+        update(LoginToken)
+        .where(LoginToken.purpose == purpose, unended)
+        .values(revoked_at=now)
+        .execution_options(synchronize_session=False)
+    )
 
 
 def is_active(db: Session, token: str) -> bool:

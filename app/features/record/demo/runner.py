@@ -16,11 +16,9 @@ from pydantic import BaseModel
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.clock import Clock
-from app.database import Database
 from app.errors import Conflict, NotDurable, NotFound
 from app.features.design.studies import create_study, study_by_key
-from app.features.people.accounts import issue_token, revoke_token
+from app.features.people.accounts import issue_token, revoke_purpose, revoke_token
 from app.features.people.audit import record
 from app.features.record.demo.demo_study import (
     DEMO_KEY,
@@ -32,9 +30,10 @@ from app.features.record.demo.demo_study import (
     remove_study,
     require_only_simulated,
 )
+from app.features.record.sessions import apply_command, commands, store_content
 from app.features.record.tryout import Performance
 from app.models import Account, Participant, Study, StudySession
-from app.platform.access import Caller, add_member
+from app.platform.access import Caller, add_member, session_by_id
 from app.platform.context import AppContext, Part
 
 DemoState = Literal["absent", "loading", "loaded", "stopped", "failed"]
@@ -44,6 +43,9 @@ SPEED = 40.0
 AT_ONCE = 3
 """People at the same time: their waiting for the server overlaps."""
 HOURS = 2.0
+PURPOSE = "demo"
+"""Of the logins of simulated people: none of them outlives the server that issued it."""
+INTERRUPTED = "The server stopped while the demo lab was being loaded."
 SEVERAL = (sys.executable, "-m", "app.rehearsal.several")
 BROKE_OFF = "The simulated people ended unexpectedly."
 REMEDY = "Load the demo lab again for those who are missing, or remove it."
@@ -79,15 +81,19 @@ class _Loading:
 class DemoRunner(Part):
     """Loads, reports and removes the demo lab of a server; thread-safe."""
 
-    database: Database
-    clock: Clock
+    context: AppContext
     _loading: _Loading | None = None
     _lock: threading.RLock = field(default_factory=threading.RLock)
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
         """Create the instance of a server from its context."""
-        return cls(context.database, context.clock)
+        return cls(context)
+
+    def start(self) -> None:
+        """Revoke the logins of people who were on their way when the server ended."""
+        with self.context.database.writing() as db:
+            revoke_purpose(db, PURPOSE, self.context.clock.utc_now())
 
     def load(self, caller: Caller, language: str, url: str) -> DemoView:
         """Make the study if it is missing, and send those who have not been there yet.
@@ -103,11 +109,11 @@ class DemoRunner(Part):
                     valid="one at a time",
                     remedy="Wait for it, or stop it by removing it.",
                 )
-            now = self.clock.utc_now()
-            with self.database.writing() as db:
-                missing = _prepared(db, caller, now)
+            now = self.context.clock.utc_now()
+            with self.context.database.writing() as db:
+                missing = _prepared(db, self.context, caller, now)
                 account = db.get_one(Account, caller.account_id)
-                token = issue_token(db, account, purpose="script", now=now, hours=HOURS).token
+                token = issue_token(db, account, purpose=PURPOSE, now=now, hours=HOURS).token
             loading = _Loading(token)
             plans = [
                 {
@@ -144,7 +150,7 @@ class DemoRunner(Part):
         """Return how far the demo lab is loaded; absent, with the reason, if it is impossible."""
         with self._lock:
             loading, running = self._loading, self._is_loading
-        with self.database.reading() as db:
+        with self.context.database.reading() as db:
             try:
                 exists = own_study(db, caller) is not None
             except Conflict as refusal:
@@ -184,11 +190,11 @@ class DemoRunner(Part):
         Returns the number of deleted rows; raises NotFound if there is no demo lab, and Conflict if
         the study is not its own or has sessions that it did not make.
         """
-        with self.database.reading() as db:
+        with self.context.database.reading() as db:
             _removable(db, caller)
         self._end_visits()
         with self._lock:
-            with self.database.writing() as db:
+            with self.context.database.writing() as db:
                 study = _removable(db, caller)
                 details = {"study": DEMO_KEY, **_counts(db, study)}
                 rows = remove_study(db, study)
@@ -198,7 +204,7 @@ class DemoRunner(Part):
                     action="demo.removed",
                     subject=DEMO_KEY,
                     details=details,
-                    now=self.clock.utc_now(),
+                    now=self.context.clock.utc_now(),
                 )
             self._loading = None
         return rows
@@ -239,23 +245,58 @@ class DemoRunner(Part):
 
     def _revoke(self, loading: _Loading) -> None:
         try:
-            with self.database.writing() as db:
-                revoke_token(db, loading.token, self.clock.utc_now())
+            with self.context.database.writing() as db:
+                revoke_token(db, loading.token, self.context.clock.utc_now())
         except Exception:
             # The token expires anyway, and the server may be stopping.
             log.exception("the login of the simulated people could not be revoked")
 
 
-def _prepared(db: Session, caller: Caller, now: datetime) -> list[int]:
-    """Make the study if it is missing; return the numbers of the people who have yet to come."""
+def _prepared(db: Session, context: AppContext, caller: Caller, now: datetime) -> list[int]:
+    """Make the study if it is missing; return the numbers of the people who have yet to come.
+
+    Visits that an earlier loading broke off are ended first: nobody can come twice at once.
+    """
     study = own_study(db, caller)
     if study is None:
         create_study(db, demo_yaml(), now)
         study = study_by_key(db, DEMO_KEY)
         add_member(db, caller, study)
         record(db, actor=caller.actor, action=LOADED, subject=DEMO_KEY, now=now)
+    _end_broken_off(db, context, study, caller)
     through = _codes(db)
     return [number for number in range(1, PEOPLE + 1) if demo_code(number) not in through]
+
+
+def _end_broken_off(db: Session, context: AppContext, study: Study, caller: Caller) -> None:
+    """Abort the demo lab's own sessions that nobody goes on with, by commands on their record."""
+    own = [demo_code(number) for number in range(1, PEOPLE + 1)]
+    broken_off = db.scalars(
+        select(StudySession.id)
+        .join(Participant, Participant.id == StudySession.participant_id)
+        .where(
+            StudySession.study_id == study.id,
+            StudySession.kind == "simulated",
+            StudySession.status.in_(("planned", "active")),
+            Participant.code.in_(own),
+        )
+        .order_by(StudySession.id)
+    )
+    for session_id in list(broken_off):
+        session = session_by_id(db, session_id, lock=True)
+        if session.status == "planned":
+            # Only what has started can be ended.
+            apply_command(db, context, session, commands.Start(), actor=caller.actor)
+        reason = store_content(
+            db,
+            session_id=session.id,
+            kind="reason",
+            body=INTERRUPTED,
+            by=caller.actor,
+            now=context.clock.utc_now(),
+        )
+        stop = commands.Stop(status="aborted", content=reason)
+        apply_command(db, context, session, stop, actor=caller.actor)
 
 
 def _removable(db: Session, caller: Caller) -> Study:

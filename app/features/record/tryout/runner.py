@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, StringConstraints
 from app.clock import Clock
 from app.database import Database
 from app.errors import Conflict, NotDurable, NotFound
-from app.features.people.accounts import issue_token, revoke_token
+from app.features.people.accounts import issue_token, revoke_purpose, revoke_token
 from app.features.record.tryout.performance import Performance
 from app.models import Account
 from app.platform.access import Caller
@@ -58,6 +58,8 @@ log = logging.getLogger(__name__)
 SPEED = 4.0
 """Slow enough to follow: a session of a quarter of an hour takes four minutes."""
 HOURS = 2.0
+PURPOSE = "tryout"
+"""Of the logins of scripted participants: none of them outlives the server that issued it."""
 MAX_STEP_LENGTH = 120
 BROKE_OFF = TryoutTrouble(
     message="the scripted participant ended unexpectedly",
@@ -99,6 +101,11 @@ class TryoutRunner(Part):
     def of(cls, context: AppContext) -> Self:
         """Create the instance of a server from its context."""
         return cls(context.database, context.clock)
+
+    def start(self) -> None:
+        """Revoke the login of somebody who was performing when the server ended."""
+        with self.database.writing() as db:
+            revoke_purpose(db, PURPOSE, self.clock.utc_now())
 
     def begin(self, caller: Caller, study_key: str, language: str, url: str) -> TryoutView:
         """Send a scripted participant through a study at `url`; raises Conflict, NotDurable."""
@@ -195,7 +202,7 @@ class TryoutRunner(Part):
     def _token(self, caller: Caller, now: datetime) -> str:
         with self.database.writing() as db:
             account = db.get_one(Account, caller.account_id)
-            return issue_token(db, account, purpose="script", now=now, hours=HOURS).token
+            return issue_token(db, account, purpose=PURPOSE, now=now, hours=HOURS).token
 
     def _revoke(self, tryout: Tryout) -> None:
         try:

@@ -10,6 +10,8 @@ from sqlalchemy.orm import Session
 from app.database import Base
 from app.errors import Conflict
 from app.features.design.studies import create_study, newest_version, protocol_of, study_by_key
+from app.features.people.accounts import issue_token
+from app.features.people.accounts.service import is_active
 from app.features.people.audit import record
 from app.features.record.demo.demo_study import (
     DEMO_KEY,
@@ -20,7 +22,9 @@ from app.features.record.demo.demo_study import (
     demo_yaml,
     remove_study,
 )
-from app.features.record.demo.runner import DemoRunner
+from app.features.record.demo.runner import INTERRUPTED, DemoRunner
+from app.features.record.sessions import content_body, contents_of
+from app.features.record.tryout import TryoutRunner
 from app.models import Account, AuditEntry
 from app.platform.access import Caller
 from app.protocol import TIMED_KINDS, compile_plan, sequences
@@ -154,3 +158,51 @@ def test_the_audit_trail_says_what_was_removed(fresh_lab: Lab) -> None:
     with lab.database.reading() as db:
         (entry,) = db.query(AuditEntry).filter_by(action="demo.removed")
     assert json.loads(entry.details) == {"study": DEMO_KEY, "participants": 1, "sessions": 1}
+
+
+def test_visits_that_were_broken_off_are_ended_on_the_record_before_people_come_again(
+    fresh_lab: Lab,
+) -> None:
+    """Loading again aborts the demo lab's unfinished sessions with a reason, and no others."""
+    lab = fresh_lab
+    with lab.database.writing() as db:
+        _load_one(db)
+        account = db.query(Account).filter_by(username="admin").one()
+    caller = Caller(account.id, account.username, account.role)
+    views = [
+        ok(
+            lab.operator.post(
+                f"/api/studies/{DEMO_KEY}/sessions",
+                json={"kind": "simulated", "participant_code": code},
+            )
+        )
+        for code in (demo_code(2), demo_code(3), "SIM-9999")
+    ]
+    for view in (views[0], views[2]):
+        lab.command(view, "start")
+    *broken_off, other = (view["id"] for view in views)
+    runner = lab.context.part(DemoRunner)
+    assert runner.load(caller, "en", NOBODY).state == "loading"
+    runner.stop()
+    assert [lab.view(one)["status"] for one in broken_off] == ["aborted", "aborted"]
+    assert lab.view(other)["status"] == "active"
+    with lab.database.reading() as db:
+        reasons = [
+            content_body(row) for one in broken_off for row in contents_of(db, one, "reason")
+        ]
+    assert reasons == [INTERRUPTED, INTERRUPTED]
+
+
+def test_no_login_of_simulated_people_outlives_their_server(fresh_lab: Lab) -> None:
+    """A server that starts revokes the logins of the one before, and leaves those of scripts."""
+    lab = fresh_lab
+    with lab.database.writing() as db:
+        account = db.query(Account).filter_by(username="admin").one()
+        tokens = [
+            issue_token(db, account, purpose=one, now=NOW, hours=2.0).token
+            for one in ("demo", "tryout", "script")
+        ]
+    lab.context.part(DemoRunner).start()
+    lab.context.part(TryoutRunner).start()
+    with lab.database.reading() as db:
+        assert [is_active(db, one) for one in tokens] == [False, False, True]
