@@ -1,6 +1,4 @@
-/**
- * The help menu in the header: help pages, scripted participant, and the tour where there is one.
- */
+/** The sidebar's help menu: help pages, scripted participant, and the tour where there is one. */
 import { ActionIcon, Menu } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { studies } from "@shared/api/endpoints";
