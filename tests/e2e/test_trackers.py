@@ -40,7 +40,7 @@ def test_trackers_arrive_are_judged_and_are_put_on_limbs(
     experimenter = Experimenter(page, live_server.url)
     experimenter.log_in()
     page.goto(f"{live_server.url}/#/equipment")
-    page.get_by_role("link", name="Trackers of other software").click()
+    page.get_by_role("link", name="Trackers from other software").click()
     expect(page.get_by_role("heading", name="Nothing has arrived yet")).to_be_visible()
     expect(page.get_by_text("Closed", exact=True)).to_have_count(3)
     assert axe(page) == []

@@ -28,7 +28,7 @@ TITLE = {"en": "Demo lab (simulated people)", "de": "Demo-Labor (simulierte Pers
 DESCRIPTION = {
     "en": (
         "Twelve simulated people act through a delayed copy of their body at 0, 125 and 350 ms of "
-        "added latency, in phases of 10 s. Everything here is made up by the rehearsal's "
+        "added latency, in phases of 10 s. Everything here comes from the rehearsal's "
         "generator: it shows what the product does and says nothing about people."
     ),
     "de": (

@@ -42,7 +42,7 @@ export const avatarsEn = {
   "avatars.mirror": "Mirror",
   "avatars.mirror.left_to_right": "Copy left to right",
   "avatars.mirror.right_to_left": "Copy right to left",
-  "avatars.mirror.swap": "Exchange both sides",
+  "avatars.mirror.swap": "Swap both sides",
   "avatars.mirror.only": "Only some parts",
   "avatars.mirror.arms": "Arms",
   "avatars.mirror.fingers": "Fingers",
@@ -167,7 +167,7 @@ export const avatarsEn = {
   "avatars.convert.now": "Now",
   "avatars.convert.then": "Then",
   "avatars.convert.rule":
-    "The greater of both limits becomes the symmetric one, and the stiffest motor that of all. You can also keep these values and only edit what the joints show: an edit then changes only the limit that it was taken from.",
+    "The greater of the two limits becomes the symmetric one, and the stiffest motor becomes the motor of all. You can also keep these values and only edit what the joints show: an edit then changes only the limit that it was taken from.",
   "avatars.convert.noWayBack":
     "Converting changes the configuration. Showing one joint per axis again does not restore these values; only Undo does.",
   "avatars.convert.look": "Keep them, show one joint per part",
@@ -316,7 +316,7 @@ export const avatarsEn = {
   "avatars.conflict.both_other": "{{count}} values were changed by both; they will be yours.",
   "avatars.conflict.mine": "Save yours after it, as version {{number}}",
   "avatars.conflict.other": "Save yours as another avatar",
-  "avatars.conflict.differences": "Differences between both",
+  "avatars.conflict.differences": "Differences between the two",
   "avatars.conflict.theirs": "Theirs",
   "avatars.conflict.yours": "Yours",
   "avatars.versions": "Versions",
@@ -357,7 +357,7 @@ export const avatarsEn = {
   "avatars.import.inFile": "In the file",
   "avatars.import.refused": "The file {{name}} cannot be used, so nothing was changed",
   "avatars.import.tooLarge":
-    "It has {{size}}, a file of an avatar {{most}} at most. Choose one that was saved by this page or by ./run avatar.",
+    "It has {{size}}; the file of an avatar has at most {{most}}. Choose one that was saved by this page or by ./run avatar.",
   "avatars.import.line": "Line {{line}}",
   "avatars.import.more_one": "There is {{count}} more problem.",
   "avatars.import.more_other": "There are {{count}} more problems.",

@@ -100,7 +100,7 @@ export const importsEn = {
   "imports.offer.maximum": "Highest answer",
   "imports.offer.confirmed": "The questionnaire's scale is {{low}} to {{high}}",
   "imports.offer.guess":
-    "The ends are a guess from the answers seen. An end that you neither change nor confirm is called a guess in the instrument.",
+    "The ends are a guess from the answers seen. An end that you neither change nor confirm is marked as a guess in the instrument.",
   "imports.offer.items": "Columns that become its items: {{kept}} of {{count}}",
   "imports.offer.make": "Make this instrument",
   "imports.offer.leftOut": "Other columns that are not imported: {{count}}",
@@ -218,7 +218,7 @@ export const importsDe: Readonly<Record<keyof typeof importsEn, string>> = {
   "imports.offer.maximum": "Höchste Antwort",
   "imports.offer.confirmed": "Die Skala des Fragebogens reicht von {{low}} bis {{high}}",
   "imports.offer.guess":
-    "Die Enden sind aus den vorkommenden Antworten geschätzt. Ein Ende, das Sie weder ändern noch bestätigen, heißt im Instrument geschätzt.",
+    "Die Enden sind aus den vorkommenden Antworten geschätzt. Ein Ende, das Sie weder ändern noch bestätigen, wird im Instrument als geschätzt vermerkt.",
   "imports.offer.items": "Spalten, die zu Fragen werden: {{kept}} von {{count}}",
   "imports.offer.make": "Dieses Instrument anlegen",
   "imports.offer.leftOut": "Andere Spalten, die nicht importiert werden: {{count}}",

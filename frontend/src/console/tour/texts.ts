@@ -12,7 +12,7 @@ export const tourEn = {
     "No people and no headset needed: a scripted participant goes through a whole session of this study while you watch. It is marked as simulated and never mixed with participants' data.",
   "acting.button": "Act on this screen",
   "acting.explain":
-    "Take the participant's place yourself, with mouse and keyboard: a new tab opens where the body is entered. It is a test session, and never mixed with participants' data.",
+    "Take the participant's place yourself, with mouse and keyboard: a new tab opens, just before the body appears. It is a test session, and never mixed with participants' data.",
   "acting.skipped": "Acted on a screen: what comes before the body was left out.",
   "try.starting": "The scripted participant is getting ready",
   "try.starting.body": "It creates a simulated session and pairs its own tablet and headset.",
@@ -76,7 +76,7 @@ export const tourDe: Readonly<Record<keyof typeof tourEn, string>> = {
     "Ohne Teilnehmende und ohne Headset: Eine simulierte Person durchläuft eine ganze Sitzung dieser Studie, und Sie sehen zu. Sie ist als simuliert gekennzeichnet und wird nie mit Daten von Teilnehmenden vermischt.",
   "acting.button": "Auf diesem Bildschirm handeln",
   "acting.explain":
-    "Nehmen Sie selbst mit Maus und Tastatur teil: Ein neuer Tab öffnet sich dort, wo der Körper betreten wird. Es ist eine Testsitzung und wird nie mit Daten von Teilnehmenden vermischt.",
+    "Nehmen Sie selbst mit Maus und Tastatur teil: Ein neuer Tab öffnet sich, kurz bevor der Körper erscheint. Es ist eine Testsitzung und wird nie mit Daten von Teilnehmenden vermischt.",
   "acting.skipped": "Auf einem Bildschirm gehandelt: Was vor dem Körper kommt, wurde ausgelassen.",
   "try.starting": "Die simulierte Person macht sich bereit",
   "try.starting.body":

@@ -90,7 +90,7 @@ export const verdictsDe: Readonly<Record<keyof typeof verdictsEn, string>> = {
   "selftest.input.controllers": "Controller",
   "selftest.input.hands": "Hände",
   "selftest.input.body": "Körper-Tracking",
-  "selftest.input.shins": "Controller an den Schienbeinen",
+  "selftest.input.shins": "Controller an den Unterschenkeln",
   "selftest.input.trackers": "Tracker",
   "selftest.input.desktop": "Maus und Tastatur",
   "selftest.input.scripted": "Skript",
@@ -115,7 +115,7 @@ export const verdictsDe: Readonly<Record<keyof typeof verdictsEn, string>> = {
     "Starten Sie die VR-Brille neu und testen Sie noch einmal. Bleibt es langsam, nehmen Sie einen einfacheren Körper oder eine schnellere VR-Brille.",
   "verdict.physics_resets": "Körper zurückgesetzt",
   "verdict.physics_resets.do":
-    "Testen Sie noch einmal mit ruhigen Bewegungen. Geschieht es wieder, stimmen Sie die Motoren des Avatars in der Konsole ab.",
+    "Testen Sie noch einmal mit ruhigen Bewegungen. Geschieht es wieder, stellen Sie die Motoren des Avatars in der Konsole neu ein.",
   "verdict.head_loss": "Längster Verlust des Kopfes",
   "verdict.head_loss.do":
     "Machen Sie mehr Licht, wischen Sie die Kameras ab und zeichnen Sie den Spielbereich neu.",

@@ -8,11 +8,11 @@ export const tryoutEn = {
   "tryout.failed": "The physics could not be started.",
   "tryout.failed.remedy": "Reload the page. If it happens again, try another browser.",
   "tryout.stopped": "The physics has stopped: {{problem}}",
-  "tryout.restored_one": "Once the simulation failed and was restored to the pose before it.",
+  "tryout.restored_one": "The simulation failed once and was restored to the pose before.",
   "tryout.restored_other":
-    "{{count}} times the simulation failed and was restored to the pose before it.",
+    "The simulation failed {{count}} times and was restored to the pose before.",
   "tryout.restored.remedy":
-    "In a session this would be visible. Lower kp or raise kd on the axes that shake.",
+    "In a session this would be visible. Lower the stiffness or raise the damping of the axes that shake.",
   "tryout.notFinite": "The simulation has numbers that are not finite.",
   "tryout.notFinite.remedy": "Reset it, and lower the gains that you changed last.",
   "tryout.picture": "The simulated body; drag a part to pull at it, drag beside it to look around",
@@ -148,12 +148,12 @@ export const tryoutDe: Readonly<Record<keyof typeof tryoutEn, string>> = {
   "tryout.restored_other":
     "{{count}}-mal ist die Simulation fehlgeschlagen und wurde auf die Haltung davor zurückgesetzt.",
   "tryout.restored.remedy":
-    "In einer Sitzung wäre das zu sehen. Senken Sie kp oder erhöhen Sie kd an den Achsen, die zittern.",
+    "In einer Sitzung wäre das zu sehen. Senken Sie die Steifigkeit oder erhöhen Sie die Dämpfung der Achsen, die zittern.",
   "tryout.notFinite": "Die Simulation enthält Zahlen, die nicht endlich sind.",
   "tryout.notFinite.remedy":
-    "Setzen Sie sie zurück und senken Sie die Verstärkungen, die Sie zuletzt geändert haben.",
+    "Setzen Sie sie zurück und senken Sie die Reglerwerte, die Sie zuletzt geändert haben.",
   "tryout.picture":
-    "Der simulierte Körper; an einem Körperteil ziehen, um daran zu zerren, daneben, um sich umzusehen",
+    "Der simulierte Körper; ziehen Sie mit der Maus an einem Körperteil, oder daneben, um sich umzusehen",
   "tryout.flat": "Dieser Browser zeichnet nicht in 3-D: Die Kurven zeigen die Bewegung.",
   "tryout.flat.remedy": "Nehmen Sie einen Browser mit WebGL, um den Körper zu sehen.",
   "tryout.play": "Abspielen",
@@ -180,7 +180,7 @@ export const tryoutDe: Readonly<Record<keyof typeof tryoutEn, string>> = {
   "tryout.capture.loading": "Die Aufnahme wird geladen",
   "tryout.capture.unusable": "Diese Aufnahme hat keine Rotationen, die sich abspielen ließen.",
   "tryout.pose": "Haltung",
-  "tryout.pose.t": "T-Haltung",
+  "tryout.pose.t": "T-Pose",
   "tryout.pose.leg": "Linkes Bein gehoben",
   "tryout.pose.arms": "Arme unten",
   "tryout.wave": "Ziel",
@@ -213,7 +213,7 @@ export const tryoutDe: Readonly<Record<keyof typeof tryoutEn, string>> = {
   "tryout.latency": "Latenz",
   "tryout.gravity": "Schwerkraft",
   "tryout.stature": "Körpergröße",
-  "tryout.compare": "Neben",
+  "tryout.compare": "Daneben",
   "tryout.compare.none": "Nichts",
   "tryout.compare.version": "{{title}}, Version {{number}}",
   "tryout.own": "{{title}}, wie hier bearbeitet",

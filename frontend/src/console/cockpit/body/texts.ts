@@ -40,11 +40,10 @@ export const bodyPanelEn = {
   "body.problem.not_upright": "not upright again yet",
   "body.problem.not_reached": "not reaching yet",
   "body.problem.lost": "a part is not seen",
-  "body.problem.implausible": "the height is nobody's: check the headset's floor",
+  "body.problem.implausible": "nobody is of this height: check the headset's floor",
   "body.notice.swapped_hands":
     "The controllers were in the other hands; each counts for the hand it is in.",
-  "body.notice.swapped_shins":
-    "The trackers of the shins were exchanged; each counts for the leg it is on.",
+  "body.notice.swapped_shins": "The shin trackers were swapped; each counts for the leg it is on.",
   "body.notice.bent_knees": "The knees were bent: the measured height is too small.",
   "body.notice.bent_elbows": "The arms were not stretched: the measured span is too small.",
   "body.notice.palms_not_down":
@@ -119,7 +118,7 @@ export const bodyPanelDe: Readonly<Record<keyof typeof bodyPanelEn, string>> = {
   "body.problem.not_upright": "noch nicht wieder aufrecht",
   "body.problem.not_reached": "greift noch nicht",
   "body.problem.lost": "ein Körperteil wird nicht gesehen",
-  "body.problem.implausible": "die Größe hat niemand: Boden des Headsets prüfen",
+  "body.problem.implausible": "so groß oder klein ist niemand: Boden des Headsets prüfen",
   "body.notice.swapped_hands":
     "Die Controller waren in der jeweils anderen Hand; jeder gilt für die Hand, die ihn hält.",
   "body.notice.swapped_shins":

@@ -2,7 +2,7 @@
 export const selfTestsEn = {
   "selftests.title": "Headset tests",
   "selftests.lead":
-    "What each headset measured of itself in two minutes: frame rate, physics, tracking and the way of its data to the disk. Run one on every new headset, and after an update of its software or of the network.",
+    "What each headset measured of itself in two minutes: frame rate, physics, tracking, and how its data reach the disk. Run one on every new headset, and after an update of its software or of the network.",
   "selftests.empty": "No headset has been tested yet",
   "selftests.empty.body":
     "Pair a headset with a session, open /vr on it, and choose “Test this headset (2 minutes)” before the session starts. Put the headset on for the test: a headset on a table does not track anybody.",
@@ -88,7 +88,7 @@ export const selfTestsDe: Readonly<Record<keyof typeof selfTestsEn, string>> = {
     "Was jedes Headset in zwei Minuten an sich selbst gemessen hat: Bildrate, Physik, Tracking und den Weg seiner Daten auf die Festplatte. Testen Sie jedes neue Headset, und nach jeder Aktualisierung seiner Software oder des Netzes.",
   "selftests.empty": "Es wurde noch kein Headset getestet",
   "selftests.empty.body":
-    "Koppeln Sie ein Headset mit einer Sitzung, öffnen Sie darauf /vr und wählen Sie vor Beginn der Sitzung „Diese VR-Brille testen (2 Minuten)“. Setzen Sie das Headset für den Test auf: Auf einem Tisch trackt es niemanden.",
+    "Koppeln Sie ein Headset mit einer Sitzung, öffnen Sie darauf /vr und wählen Sie vor Beginn der Sitzung „Diese VR-Brille testen (2 Minuten)“. Setzen Sie das Headset für den Test auf: Auf einem Tisch erfasst es niemanden.",
   "selftests.table": "Tests von Headsets, neueste zuerst",
   "selftests.when": "Getestet",
   "selftests.device": "Gerät",
@@ -107,9 +107,9 @@ export const selfTestsDe: Readonly<Record<keyof typeof selfTestsEn, string>> = {
   "selftests.verdicts": "Urteile",
   "selftests.figures": "Alle Werte",
   "selftests.ran": "Lief {{duration}}, bewegt durch: {{inputs}}. Der Bericht kam an: {{received}}.",
-  "selftests.clock": "Die Uhr der VR-Brille geht mindestens {{duration}} vor",
+  "selftests.clock": "Die Uhr des Headsets geht mindestens {{duration}} vor",
   "selftests.clock.body":
-    "Der Bericht kam an, bevor sein Test zu Ende war. Stellen Sie Datum und Uhrzeit der VR-Brille; die Liste ist nach der Uhr des Studienrechners geordnet.",
+    "Der Bericht kam an, bevor sein Test zu Ende war. Stellen Sie Datum und Uhrzeit des Headsets; die Liste ist nach der Uhr des Studienrechners geordnet.",
   "selftests.clock.short": "Uhr geht vor",
   "selftests.errors": "Fehler der Seite",
   "selftests.unmeasured": "Nicht gemessen",
@@ -124,7 +124,7 @@ export const selfTestsDe: Readonly<Record<keyof typeof selfTestsEn, string>> = {
   "selftests.nominal": "Rate, die das Gerät angibt",
   "selftests.mean": "Mittlere Rate",
   "selftests.frames": "Bilder",
-  "selftests.late": "Bilder später als 1,5 Abstände",
+  "selftests.late": "Bilder später als 1,5 Bildabstände",
   "selftests.p50": "Bildabstand, p50",
   "selftests.p95": "Bildabstand, p95",
   "selftests.p99": "Bildabstand, p99",
@@ -156,8 +156,8 @@ export const selfTestsDe: Readonly<Record<keyof typeof selfTestsEn, string>> = {
   "selftests.goal.Head": "Kopf",
   "selftests.goal.LeftHand": "Linke Hand",
   "selftests.goal.RightHand": "Rechte Hand",
-  "selftests.goal.LeftLowerLeg": "Linkes Schienbein",
-  "selftests.goal.RightLowerLeg": "Rechtes Schienbein",
+  "selftests.goal.LeftLowerLeg": "Linker Unterschenkel",
+  "selftests.goal.RightLowerLeg": "Rechter Unterschenkel",
   "selftests.tracked": "Getrackt",
   "selftests.inferred": "Erschlossen",
   "selftests.lost": "Verloren",

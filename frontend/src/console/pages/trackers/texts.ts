@@ -1,7 +1,7 @@
 /** Texts of the page Trackers: doors for tracking software, and the sources behind them. */
 export const trackersEn = {
   "trackers.title": "Trackers",
-  "trackers.link": "Trackers of other software",
+  "trackers.link": "Trackers from other software",
   "trackers.lead":
     "OptiTrack, SlimeVR, Virtual Motion Capture or a script can send their trackers here, through a door that you open. They are only watched on this page, until they are chosen in a session's cockpit: then they reach its headset, and are recorded.",
   "trackers.doors": "Doors",
@@ -36,9 +36,9 @@ export const trackersEn = {
   "trackers.trouble.no_such_address":
     "This computer does not have the address {{interface}} any more. Reconnect that network, or close this door and choose another address.",
   "trackers.trouble.forbidden":
-    "The system does not let this server use port {{port}} or send to that address. Look at its firewall, or close this door and choose other ones.",
+    "The system does not let this server use port {{port}} or send to that address. Look at its firewall, or close this door and choose another port or address.",
   "trackers.trouble.unreachable":
-    "There is no way from {{interface}} to that network. Check the cable, or close this door and choose the address that is in Motive's network.",
+    "There is no route from {{interface}} to that network. Check the cable, or close this door and choose the address that is in Motive's network.",
   "trackers.trouble.other":
     "The system says: {{detail}}. If that does not help, close this door and choose another port.",
   "trackers.openedBy": "Opened by {{by}}, {{at}}",
@@ -155,7 +155,7 @@ export const trackersDe: Readonly<Record<keyof typeof trackersEn, string>> = {
   "trackers.trouble.no_such_address":
     "Dieser Rechner hat die Adresse {{interface}} nicht mehr. Stellen Sie die Netzverbindung wieder her, oder schließen Sie diese Tür, und wählen Sie eine andere Adresse.",
   "trackers.trouble.forbidden":
-    "Das System lässt diesen Server den Port {{port}} nicht verwenden oder nicht an diese Adresse senden. Sehen Sie in seine Firewall, oder schließen Sie diese Tür, und wählen Sie andere.",
+    "Das System lässt diesen Server den Port {{port}} nicht verwenden oder nicht an diese Adresse senden. Prüfen Sie seine Firewall, oder schließen Sie diese Tür, und wählen Sie einen anderen Port oder eine andere Adresse.",
   "trackers.trouble.unreachable":
     "Von {{interface}} führt kein Weg in dieses Netz. Prüfen Sie das Kabel, oder schließen Sie diese Tür, und wählen Sie die Adresse im Netz von Motive.",
   "trackers.trouble.other":
