@@ -357,7 +357,8 @@ def test_several_measures_are_never_averaged(tmp_path: Path) -> None:
     assert "--where 'score=...'" in refused
     by_number = path.read_text().replace("agency", "3").replace("ownership", "4")
     other = _written(tmp_path, by_number.splitlines(), "numbers.csv")
-    assert _COMMAND.figures(other, *asked)["rows_used"] == 48  # numbers are measured, not named
+    assert "--average 'score'" in _COMMAND.refusal(other, *asked)
+    assert _COMMAND.figures(other, *asked, "--average", "score")["rows_used"] == 48
     figures = _COMMAND.figures(path, *asked, "--where", "score=agency")
     assert (figures["rows_used"], figures["rows_left_out"]) == (24, 48)
     assert max(one["mean"] for one in figures["means"]) <= 7.0

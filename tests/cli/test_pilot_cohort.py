@@ -61,6 +61,7 @@ def test_the_same_bytes_however_it_is_shared_out(
     merged = _COMMAND.figures("merge", *shards, "--study", study)
     assert _without_machine(merged) == _without_machine(report)
     assert merged["real_time_factor"] is None
+    assert "is no shipped one: give its file with --study" in _COMMAND.refusal("merge", *shards)
 
 
 def test_a_killed_run_resumes(

@@ -36,7 +36,7 @@ from tests.docs.commands import Command, Fate, commands, mentions
 from tests.docs.markdown import DOCS, REPOSITORY
 from tests.features.lab import Lab as RunningLab
 from tests.features.lab import running_lab
-from tests.rehearsal.performed import Lengths
+from tests.rehearsal.performed import STUDY, Lengths
 from tests.science.alignment.rooms import OPTICAL, looking_around, recorded, some_room
 from tests.science.retargeting.walks import made_walk
 from tests.support.lan import LanServer
@@ -48,6 +48,7 @@ BY_PAGE = {
     page: [command for command in commands() if command.page == page and command.fate is Fate.RUN]
     for page in dict.fromkeys(command.page for command in commands())
 }
+COHORT = rf"\./run pilot {STUDY}"
 BRIEF_PHASES = Lengths(2.0, 4.0, 0.5)
 FAST_WALKING = ("--entries", "300", "--k", "30", "--reading", "time-aware")
 
@@ -78,6 +79,8 @@ class Lab:
             r"headset\.csv": self._two_systems,
             r"answers\.csv": self._answers,
             r"my-scene\.yaml": self._scene,
+            r"our-room\.yaml": self._room,
+            COHORT: self._brief_study,
         }.items():
             if re.search(pattern, command.text):
                 make()
@@ -127,6 +130,18 @@ class Lab:
         assert shown is not None
         (self.folder / "my-scene.yaml").write_text(shown[1])
 
+    def _room(self) -> None:
+        (self.folder / "our-room.yaml").write_text(
+            "key: our-room\n"
+            "bounds_m: [0, 0, 4, 4]\n"
+            "places: {door: [0.5, 2.0], boxes: [3.5, 2.0]}\n"
+            "paths: [{name: to the boxes, from: door, to: boxes}]\n"
+            "obstacles: [{name: desk, shape: box, center_m: [2, 3.5], size_m: [1, 0.5]}]\n"
+        )
+
+    def _brief_study(self) -> None:
+        (self.folder / "brief.yaml").write_text(BRIEF_PHASES.text(), encoding="utf-8")
+
     def _answers(self) -> None:
         items = [f"q{number}" for number in range(1, 15)]
         text = _table(",".join(["person", *items]), [",".join(["P1", *["4"] * 14])])
@@ -173,6 +188,8 @@ PREPARED = {"./run restore /media/usb/2026-11-21.reembody": "an empty data folde
 BRIEF = {
     r"\./run walk fit": FAST_WALKING,
     r"\./run pilot power": ("--sets", "20"),
+    COHORT: ("--participants", "2", "--avatar", "delayed_copy"),
+    r"\./run pilot merge people": ("--study", "brief.yaml"),
     # The last one wins: an avatar of which only one arm moves.
     r"\./run tune": ("--avatar", "arm"),
 }
@@ -181,6 +198,8 @@ BRIEF = {
 
 def _run(command: Command, lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
     words = [_put_in_place(word, lab) for word in command.words]
+    if re.match(COHORT, command.text):
+        words[2] = "brief.yaml"
     if words[0] != "./run":
         _in_a_shell(command, lab)
     elif len(words) == 1 or words[1] == "serve" or words[1].startswith("-"):
@@ -308,12 +327,12 @@ def test_a_server_starts_on_postgresql(tmp_path: Path, postgres_url: str) -> Non
 
 def test_every_command_has_an_example_that_runs() -> None:
     """Every command of `reembody` has an example in the docs that the usual run executes."""
+    groups = {name.split()[0] for name in _names(CLI) if " " in name}
     shown = {
-        command.words[1]
-        if command.words[1] not in {"avatar", "crossing", "pilot", "tls", "tracking", "walk"}
-        else " ".join(command.words[1:3])
+        " ".join(words[: 2 if words[0] in groups else 1])
         for command in commands()
         if command.fate is Fate.RUN and command.words[0] == "./run" and len(command.words) > 1
+        for words in [_in_full(command.words[1:])]
     }
     assert sorted(_names(CLI) - shown) == []
 
@@ -365,7 +384,7 @@ def _problem_of(command: Command) -> str | None:
 
 
 def _problem_of_bench(arguments: list[str]) -> str | None:
-    if arguments[:1] not in ([], ["NAME"], ["--help"]) and arguments[0] not in NAMES:
+    if arguments[:1] not in ([], ["NAME"], ["..."], ["--help"]) and arguments[0] not in NAMES:
         return f"no benchmark {arguments[0]}"
     known = {option for action in parser()._actions for option in action.option_strings}
     unknown = [word for word in arguments if word.startswith("--") and word not in known]
@@ -378,7 +397,7 @@ def _problem_of_reembody(arguments: list[str]) -> str | None:
         return None
     found = CLI
     options = {"--help"}
-    words = ["serve", *arguments] if arguments[0].startswith("-") else arguments
+    words = _in_full(arguments)
     for word in words:
         names = word.split("|")
         if isinstance(found, TyperGroup) and not word.startswith("-"):
@@ -389,6 +408,15 @@ def _problem_of_reembody(arguments: list[str]) -> str | None:
         if word.startswith("--") and word not in options:
             return f"no option {word}"
     return None
+
+
+def _in_full(words: list[str]) -> list[str]:
+    """Put in what may be left out: `serve`, and `cohort` between `pilot` and a study."""
+    if words[0].startswith("-"):
+        return ["serve", *words]
+    if words[:2] in (["pilot", "STUDY"], ["pilot", STUDY]):
+        return ["pilot", "cohort", *words[1:]]
+    return words
 
 
 def _names(group: object, before: str = "") -> set[str]:

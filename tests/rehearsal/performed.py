@@ -41,21 +41,24 @@ class Lengths:
         """Return the key of the study with these durations."""
         return STUDY if self == SHIPPED else f"{STUDY}-{self.task_s:g}-s"
 
-    def store(self, server: LiveServer) -> str:
-        """Store the study with these durations and return its key."""
-        if self == SHIPPED:
-            return STUDY
-        text = edited(
+    def text(self) -> str:
+        """Return the shipped study with these durations, as the text of a file."""
+        return edited(
             (f"key: {STUDY}", f"key: {self.key}"),
             ("duration_s: 120", f"duration_s: {self.roam_s}"),
             *[("duration_s: 60\n", f"duration_s: {self.task_s}\n")] * 2,
             *[("preparation_s: 5\n", f"preparation_s: {self.around_s}\n")] * 2,
             *[("freeze_s: 5\n", f"freeze_s: {self.around_s}\n")] * 2,
         )
+
+    def store(self, server: LiveServer) -> str:
+        """Store the study with these durations and return its key."""
+        if self == SHIPPED:
+            return STUDY
         with server.client() as client:
             credentials = {"username": "admin", "password": ADMIN_PASSWORD}
             client.post("/api/login", json=credentials).raise_for_status()
-            client.post("/api/studies", json={"yaml": text}).raise_for_status()
+            client.post("/api/studies", json={"yaml": self.text()}).raise_for_status()
         return self.key
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from app.cli.errors import require_folder_of
-from app.cli.pilot.inputs import StudyFile, read_study
+from app.cli.pilot.inputs import StudyFile, is_shipped, read_study
 from app.platform.workers import end_with_parent
 from app.protocol import StudyProtocol
 from app.rehearsal.visits import AvatarKind, PhaseOutcome, Visit, avatar_kind_of, simulate_visit
@@ -122,7 +122,12 @@ def merged_cohort(paths: Sequence[Path]) -> Cohort:
 
 def study_of(cohort: Cohort, given: str | None) -> StudyFile:
     """Read the study of a merged cohort; raises ValueError if it has changed since, OSError."""
-    file = read_study(given or str(cohort.header["study"]))
+    key = str(cohort.header["study"])
+    if given is None and not is_shipped(key):
+        raise ValueError(
+            f"the cohort's study {key!r} is no shipped one: give its file with --study"
+        )
+    file = read_study(given or key)
     if file.study.content_hash != cohort.header["study_sha256"]:
         raise ValueError(
             f"{file.path} is not the study that was simulated (SHA-256 "

@@ -92,17 +92,26 @@ def read_shard(given: str | None) -> tuple[int, int]:
     return int(found[1]) - 1, int(found[2])
 
 
+def is_shipped(name: str) -> bool:
+    """Return whether a name is that of a shipped study or template."""
+    return name in _shipped()
+
+
 def _study_path(name: str) -> Path:
-    root = study_configs_dir()
-    shipped = {
-        file.stem: file for file in (*root.glob("*.yaml"), *(root / "templates").glob("*.yaml"))
-    }
+    shipped = _shipped()
     path = shipped.get(name, Path(name))
     if not path.is_file():
         raise ValueError(
             f"there is no study {name!r}, and no such file; there are: {', '.join(sorted(shipped))}"
         )
     return path
+
+
+def _shipped() -> dict[str, Path]:
+    root = study_configs_dir()
+    return {
+        file.stem: file for file in (*root.glob("*.yaml"), *(root / "templates").glob("*.yaml"))
+    }
 
 
 def _instruments(folder: Path) -> dict[str, LoadedInstrument]:

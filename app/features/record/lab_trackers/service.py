@@ -15,10 +15,10 @@ from functools import partial
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.errors import NotFound
 from app.features.movement.live import LiveTracking, Sample, limbs_of
 from app.features.record.lab_trackers.link import TrackerLink
 from app.features.record.lab_trackers.recording import (
-    Recording,
     WaitingSamples,
     recording_of,
     store_change,
@@ -171,13 +171,27 @@ class LabTrackers(Part):
         with self._lock:
             followed = tuple(self._followed.values())
             leaving, self._leaving = self._leaving, []
-        for one in leaving:
-            self._store(one)
-        for one in followed:
-            self._store(one)
-            if not is_last:
-                self.follow(one.session_id)
-                self._watch(one)
+        for one in (*leaving, *followed):
+            try:
+                self._store(one)
+                if one in followed and not is_last:
+                    self.follow(one.session_id)
+                    self._watch(one)
+            except NotFound:
+                # Its study was deleted as a whole, the demo lab's, so nobody misses what waits.
+                self._forget(one)
+            except Exception as error:
+                # Reported here, so that it keeps no other session from being stored.
+                log.exception("the trackers of session %s could not be stored", one.session_id)
+                self._context.background.failed(THREAD, error)
+                if one in leaving:
+                    with self._lock:
+                        self._leaving.append(one)
+
+    def _forget(self, one: Followed) -> None:
+        with self._lock:
+            if self._followed.get(one.session_id) is one:
+                del self._followed[one.session_id]
 
     def _watch(self, one: Followed) -> None:
         """Have the worker look at the newest half minute, unless it still looks at the last."""
@@ -206,7 +220,7 @@ class LabTrackers(Part):
             self._wake(one.session_id)
 
     def _store(self, one: Followed) -> None:
-        """Store what waits in a transaction; if that fails, it waits on."""
+        """Store what waits in a transaction; if that fails, raise the error, and it waits on."""
         with self._context.database.reading() as db:
             recording = recording_of(db, session_by_id(db, one.session_id))
         samples, changes = one.waiting.take(), list(one.changes)
@@ -217,36 +231,30 @@ class LabTrackers(Part):
             return
         try:
             with self._context.database.writing() as db:
-                stored = self._write(db, one, kept, changes, recording)
-        except Exception as error:
+                stored = self._write(db, one, kept, changes)
+        except Exception:
             one.waiting.give_back(kept)
             one.was_recording = one.was_recording or is_kept
-            log.exception("the trackers of session %s could not be stored", one.session_id)
-            self._context.background.failed(THREAD, error)
-            return
+            raise
         one.waiting.stored += stored
         for _ in changes:
             one.changes.popleft()
         self._context.background.recovered(THREAD)
 
     def _write(
-        self,
-        db: Session,
-        one: Followed,
-        samples: list[Sample],
-        changes: list[Watched],
-        recording: Recording,
+        self, db: Session, one: Followed, samples: list[Sample], changes: list[Watched]
     ) -> int:
         session = session_by_id(db, one.session_id, lock=True)
-        clock = self._context.clock
-        place = (one.link.door, one.link.source, one.link.reference or "")
-        for change in changes if recording != "refused" else []:
-            store_change(db, self._context, session, change, place=place)
-        if not samples or recording == "refused":
+        # Asked again under the lock: somebody may have refused, or been erased, since it was read.
+        if recording_of(db, session) == "refused":
             return 0
-        return store_samples(
-            db, session.id, samples, now=clock.utc_now(), now_s=clock.monotonic_ns() / 1e9
-        )
+        place = (one.link.door, one.link.source, one.link.reference or "")
+        for change in changes:
+            store_change(db, self._context, session, change, place=place)
+        if not samples:
+            return 0
+        now, now_s = self._context.clock.utc_now(), self._now_s()
+        return store_samples(db, session.id, samples, now=now, now_s=now_s)
 
     def _now_s(self) -> float:
         return self._context.clock.monotonic_ns() / 1e9

@@ -14,7 +14,6 @@ export const capturesEn = {
   "captures.upload.open": "Open {{name}}",
   "captures.upload.open.short": "Open",
   "captures.upload.dismiss": "Remove {{name}} from this list",
-  "captures.upload.again": "Try again",
   "captures.upload.refused": "Not uploaded",
   "captures.upload.lonely": "Its {{missing}} file is missing",
   "captures.upload.lonely.asf":
@@ -75,7 +74,6 @@ export const capturesDe: Readonly<Record<keyof typeof capturesEn, string>> = {
   "captures.upload.open": "{{name}} öffnen",
   "captures.upload.open.short": "Öffnen",
   "captures.upload.dismiss": "{{name}} aus dieser Liste entfernen",
-  "captures.upload.again": "Noch einmal versuchen",
   "captures.upload.refused": "Nicht hochgeladen",
   "captures.upload.lonely": "Die {{missing}}-Datei fehlt",
   "captures.upload.lonely.asf":

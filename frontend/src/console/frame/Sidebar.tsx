@@ -21,6 +21,7 @@ import {
   isAllowed,
   isAt,
   LAB_PAGES,
+  type Place as PlaceInfo,
   SECTIONS,
   sectionAt,
   studyIn,
@@ -57,7 +58,7 @@ export function Sidebar({ account, named, onSearch, onToggle }: SidebarProps): J
           type="button"
           className={classes.search}
           aria-label={named ? undefined : t("frame.search.long")}
-          aria-keyshortcuts="Control+K"
+          aria-keyshortcuts="Control+K Meta+K"
           onClick={onSearch}
         >
           <Icon name="search" size={17} />
@@ -119,10 +120,10 @@ interface PlaceGroupProps {
 function PlaceGroup({ group, account, study, named }: PlaceGroupProps): JSX.Element | null {
   const { t } = useTexts();
   const [address] = useLocation();
-  const allowed = (places: typeof SECTIONS | typeof LAB_PAGES) =>
-    places.filter((place) => place.group === group && isAllowed(place, account.role));
-  const sections = SECTIONS.filter((one) => allowed(SECTIONS).includes(one));
-  const pages = LAB_PAGES.filter((one) => allowed(LAB_PAGES).includes(one));
+  const isShown = (place: PlaceInfo): boolean =>
+    place.group === group && isAllowed(place, account.role);
+  const sections = SECTIONS.filter(isShown);
+  const pages = LAB_PAGES.filter(isShown);
   if (sections.length + pages.length === 0) return null;
   const here = studyIn(address) === study?.key ? sectionAt(address) : null;
   return (

@@ -1,12 +1,10 @@
-/** Texts of the sidebar, the palette and the account menu. */
+/** Texts of the sidebar and the palette. */
 export const frameEn = {
   "frame.label": "Console",
   "frame.run": "Run",
   "frame.results": "Results",
   "frame.design": "Design",
   "frame.lab": "Lab",
-  "frame.trackers": "Trackers",
-  "frame.study": "Study",
   "frame.study.choose": "Choose a study",
   "frame.study.none": "No study yet",
   "frame.open": "Open the navigation",
@@ -31,8 +29,6 @@ export const frameDe: Readonly<Record<keyof typeof frameEn, string>> = {
   "frame.results": "Ergebnisse",
   "frame.design": "Entwerfen",
   "frame.lab": "Labor",
-  "frame.trackers": "Tracker",
-  "frame.study": "Studie",
   "frame.study.choose": "Studie wählen",
   "frame.study.none": "Noch keine Studie",
   "frame.open": "Navigation öffnen",

@@ -96,7 +96,7 @@ export const LAB_PAGES: readonly LabPage[] = [
   { href: "/avatars", group: "design", icon: "joint", name: "avatars.title" },
   { href: "/walking", group: "design", icon: "foot", name: "walking.title" },
   { href: "/equipment", group: "lab", icon: "headset", name: "equipment.title" },
-  { href: "/trackers", group: "lab", icon: "plug", name: "frame.trackers" },
+  { href: "/trackers", group: "lab", icon: "plug", name: "trackers.title" },
   { href: "/network", group: "lab", icon: "link", name: "network.title", permission: "network" },
   { href: "/storage", group: "lab", icon: "chart", name: "storage.title", permission: "storage" },
   { href: "/people", group: "lab", icon: "key", name: "people.title", permission: "people" },

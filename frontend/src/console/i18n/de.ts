@@ -20,7 +20,6 @@ export const de: Record<keyof typeof en, string> = {
   "app.studies": "Studien",
   "app.logout": "Abmelden",
   "app.signedInAs": "Angemeldet als {{name}} ({{role}})",
-  "app.account": "Konto",
   "app.theme.dark": "Dunkle Darstellung",
   "app.theme.light": "Helle Darstellung",
   "app.language": "English",
@@ -66,7 +65,6 @@ export const de: Record<keyof typeof en, string> = {
   "order.hidden": "Reihenfolge verdeckt (verblindet)",
   "studies.lead":
     "Jede Studie ist ein versioniertes Studienprotokoll mit eigenem Plan und eigenen Sitzungen.",
-  "studies.add": "Studie hinzufügen",
   "studies.empty.title": "Noch keine Studien",
   "studies.empty.body":
     "Eine Studie ist eine YAML-Datei mit Bedingungen, Reihenfolgen, Ablauf und Texten. Fügen Sie sie hier hinzu; jedes Problem wird mit seiner Zeile gezeigt.",

@@ -19,7 +19,6 @@ export const en = {
   "app.studies": "Studies",
   "app.logout": "Sign out",
   "app.signedInAs": "Signed in as {{name}} ({{role}})",
-  "app.account": "Account",
   "app.theme.dark": "Dark appearance",
   "app.theme.light": "Light appearance",
   "app.language": "Deutsch",
@@ -63,7 +62,6 @@ export const en = {
   "order.configured": "configured body",
   "order.hidden": "Order hidden (blinded)",
   "studies.lead": "Each study is a versioned protocol with its own ledger and sessions.",
-  "studies.add": "Add a study",
   "studies.empty.title": "No studies yet",
   "studies.empty.body":
     "A study is one YAML file with its conditions, orders, procedure and texts. Add it here; every problem is shown with its line.",

@@ -9,7 +9,6 @@ export const de: Record<keyof typeof en, string> = {
     "Geben Sie den Code ein, der auf dem Bildschirm der Versuchsleitung steht, oder scannen Sie den QR-Code.",
   "pair.code": "Verbindungscode",
   "pair.delete": "Letztes Zeichen löschen",
-  "pair.connect": "Verbinden",
   "pair.connecting": "Verbindung wird hergestellt",
   "pair.ended.title": "Dieses Tablet wurde getrennt",
   "pair.ended.body":

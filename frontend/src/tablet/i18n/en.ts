@@ -7,7 +7,6 @@ export const en = {
   "pair.lead": "Enter the code shown on the experimenter's screen, or scan its QR code.",
   "pair.code": "Pairing code",
   "pair.delete": "Delete last character",
-  "pair.connect": "Connect",
   "pair.connecting": "Connecting",
   "pair.ended.title": "This tablet was disconnected",
   "pair.ended.body":

@@ -13,12 +13,9 @@ export const de: Readonly<Record<keyof typeof en, string>> = {
     "Etwa „Quest 3, Raum 2“. Dieser Browser behält ihn; er steht bei Tests und bei der nächsten Kopplung.",
   "enter.onScreen": "Auf diesem Bildschirm handeln",
   "enter.again": "Zurück in die VR",
-  "enter.entering": "VR wird gestartet",
   "enter.language": "Sprache",
   "enter.simulated": "Simulierte Sitzung",
   "enter.connecting": "Verbindung zum Studienrechner wird hergestellt",
-  "enter.waiting":
-    "Der Studienrechner antwortet nicht. Diese Seite versucht es weiter; Sie müssen nichts tun.",
   "enter.offline":
     "Die Verbindung ist unterbrochen und wird wiederhergestellt. Alles bisher Aufgezeichnete bleibt auf dieser VR-Brille erhalten.",
   "enter.over": "Die Sitzung ist beendet",

@@ -11,12 +11,9 @@ export const en = {
     "Such as “Quest 3, room 2”. Kept by this browser, and shown with tests and at the next pairing.",
   "enter.onScreen": "Act on this screen",
   "enter.again": "Return to VR",
-  "enter.entering": "Entering VR",
   "enter.language": "Language",
   "enter.simulated": "Simulated session",
   "enter.connecting": "Connecting to the study computer",
-  "enter.waiting":
-    "The study computer does not answer. This page keeps trying; you do not have to do anything.",
   "enter.offline":
     "The connection is lost and is being restored. Everything recorded so far is kept on this headset.",
   "enter.over": "The session has ended",

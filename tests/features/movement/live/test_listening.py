@@ -4,6 +4,7 @@ import threading
 import time
 
 import pytest
+from httpx2 import Response
 
 from app.adapters.live import Reading
 from app.features.movement.live.datagrams import BUFFER_BYTES, DatagramSocket
@@ -165,13 +166,22 @@ def test_a_door_follows_what_was_stored_last(fresh_lab: Lab) -> None:
     DatagramSocket(HERE, first).close()
     again = _switch(fresh_lab, "osc", is_open=True, port=second)
     assert again["doors"][0]["state"] == "open"
-    taken = _switch(fresh_lab, "json", is_open=True, port=second)["doors"][2]
-    assert (taken["state"], taken["trouble"]) == ("failed", "port_in_use")
-    for door in ("osc", "json"):
-        _switch(fresh_lab, door, is_open=False, port=second)
+    taken = _put(fresh_lab, "json", is_open=True, port=second)
+    assert taken.status_code == 422
+    assert taken.json()["error"]["message"] == "door osc has this port"
+    other_program = DatagramSocket(HERE, first)
+    used = _switch(fresh_lab, "json", is_open=True, port=first)["doors"][2]
+    assert (used["state"], used["trouble"]) == ("failed", "port_in_use")
+    other_program.close()
+    for door, port in (("osc", second), ("json", first)):
+        _switch(fresh_lab, door, is_open=False, port=port)
+
+
+def _put(lab: Lab, door: str, *, is_open: bool, port: int) -> Response:
+    body = {"is_open": is_open, "interface": HERE, "port": port}
+    return lab.operator.put(f"/api/trackers/doors/{door}", json=body)
 
 
 def _switch(lab: Lab, door: str, *, is_open: bool, port: int) -> Json:
-    body = {"is_open": is_open, "interface": HERE, "port": port}
-    view: Json = ok(lab.operator.put(f"/api/trackers/doors/{door}", json=body))
+    view: Json = ok(_put(lab, door, is_open=is_open, port=port))
     return view

@@ -1,10 +1,8 @@
 /** Texts of the try-out: physics in the page, for a configuration that is being edited. */
 export const tryoutEn = {
-  "tryout.title": "Try it",
   "tryout.lead":
     "The physics of the headset runs in this page. Drive a joint, play a capture, pull at a part with the mouse, or drop a box, and see how well the body follows.",
   "tryout.starting": "Starting the physics",
-  "tryout.building": "Building the body",
   "tryout.failed": "The physics could not be started.",
   "tryout.failed.remedy": "Reload the page. If it happens again, try another browser.",
   "tryout.stopped": "The physics has stopped: {{problem}}",
@@ -33,7 +31,6 @@ export const tryoutEn = {
   "tryout.slow": "{{pace}} × real time: this computer is too slow",
   "tryout.axis": "Joint axis",
   "tryout.movement": "Movement",
-  "tryout.movement.drive": "Drive the joint",
   "tryout.capture": "Play a capture",
   "tryout.capture.none": "None: drive the joint",
   "tryout.capture.missing": "A capture can be played once the lab has one with a skeleton.",
@@ -134,11 +131,9 @@ export const tryoutEn = {
 };
 
 export const tryoutDe: Readonly<Record<keyof typeof tryoutEn, string>> = {
-  "tryout.title": "Ausprobieren",
   "tryout.lead":
     "Die Physik des Headsets läuft in dieser Seite. Treiben Sie ein Gelenk an, spielen Sie eine Aufnahme ab, ziehen Sie mit der Maus an einem Körperteil oder lassen Sie eine Kiste fallen, und sehen Sie, wie gut der Körper folgt.",
   "tryout.starting": "Die Physik startet",
-  "tryout.building": "Der Körper wird gebaut",
   "tryout.failed": "Die Physik ließ sich nicht starten.",
   "tryout.failed.remedy":
     "Laden Sie die Seite neu. Wenn es wieder geschieht, nehmen Sie einen anderen Browser.",
@@ -171,7 +166,6 @@ export const tryoutDe: Readonly<Record<keyof typeof tryoutEn, string>> = {
   "tryout.slow": "{{pace}} × Echtzeit: Dieser Rechner ist zu langsam",
   "tryout.axis": "Gelenkachse",
   "tryout.movement": "Bewegung",
-  "tryout.movement.drive": "Das Gelenk antreiben",
   "tryout.capture": "Eine Aufnahme abspielen",
   "tryout.capture.none": "Keine: das Gelenk antreiben",
   "tryout.capture.missing":

@@ -53,7 +53,6 @@ export const sessionEn = {
   "step.waitingForm.headset": "Waiting for the answers in the headset",
   "step.noTablet": "No tablet is connected. Pair it under Devices.",
   "step.noHeadset": "No headset is connected. Pair it under Devices, or wake it.",
-  "step.waitingHeadset": "Waiting for the headset",
   "clock.label": "Active time",
   "clock.of": "of {{time}} active time",
   "clock.progress": "Share of the active time that has passed",
@@ -147,7 +146,6 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "step.noTablet": "Kein Tablet ist verbunden. Koppeln Sie es unter Geräte.",
   "step.noHeadset":
     "Kein Headset ist verbunden. Koppeln Sie es unter Geräte oder wecken Sie es auf.",
-  "step.waitingHeadset": "Wartet auf das Headset",
   "clock.label": "Aktive Zeit",
   "clock.of": "von {{time}} aktiver Zeit",
   "clock.progress": "Verstrichener Anteil der aktiven Zeit",
