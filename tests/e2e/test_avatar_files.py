@@ -53,7 +53,7 @@ def test_a_file_is_exported_edited_refused_and_imported(
         (json.dumps({**tree, "total_mass_kg": float("nan")}), "NaN is not a finite number"),
         (json.dumps({**tree, "gravitiy": True}), "Did you mean 'gravity'?"),
         (json.dumps({**tree, "axes": {**tree["axes"], "HeadX": wrong}}), "axes.HeadX.low_deg"),
-        ("[" + " " * 10_000_000 + "]", "It has 10 MB, a file of an avatar 262 kB at most"),
+        ("[" + " " * 10_000_000 + "]", "It has 10 MB; the file of an avatar has at most 262 kB"),
     ):
         choose(text)
         expect(page.get_by_text(reason)).to_be_visible(timeout=PATIENCE_MS)
