@@ -3,7 +3,7 @@
     python -m tests.adapters.humanoids.fuzzing           200 damaged models
     python -m tests.adapters.humanoids.fuzzing --long    3,000
 
-They are read in a worker process with the limits that the server's has: 120 s for each, and 3 GiB.
+They are read in a worker process with the limits that the server's has: 60 s for each, and 3 GiB.
 The command prints how many of each kind were read and refused, the slowest, and the greatest memory
 that the process had; it fails at the first model with another outcome. Number n is always damaged
 in the same way, so `--only n` repeats one.
@@ -29,7 +29,8 @@ from random import Random
 from typing import Any, Literal
 
 from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
-from app.features.movement.captures.capture_queue import WITHIN_S, limit_memory
+from app.features.movement.captures.capture_queue import limit_memory
+from app.features.movement.humanoids.uploading import WITHIN_S
 from app.platform.workers import Worker
 from app.science.avatar.body import HumanoidError, figure_of
 from tests.support.compressed_files import draco_file, meshopt_file

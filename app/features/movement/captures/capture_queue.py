@@ -62,6 +62,9 @@ class CaptureQueue(JobQueue):
         return InvalidInput(
             f"{place}{error.reason}",
             value=error.file_name or None,
-            remedy="Correct or export the file again; docs/captures.md lists what can be read.",
+            remedy=(
+                "Correct this in the program that recorded it and export the file again. Help, "
+                "“Capture formats”, lists what can be read."
+            ),
             details=[at] if error.file_name else [],
         )

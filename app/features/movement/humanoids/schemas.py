@@ -30,6 +30,20 @@ CheckKey = Literal[
     "wearing",
 ]
 CheckStatus = Literal["good", "note", "warn", "unknown"]
+LengthName = Literal[
+    "upper_arm",
+    "forearm",
+    "hand",
+    "thigh",
+    "shank",
+    "foot",
+    "trunk",
+    "shoulders",
+    "hips",
+    "arm",
+    "shoulder_height",
+]
+"""`shoulders` and `hips` are breadths, `arm` is from the shoulder's joint to the wrist."""
 
 
 class LicenceView(BaseModel):
@@ -60,11 +74,26 @@ class ConfirmationView(BaseModel):
     at: datetime
 
 
+class CheckedLength(BaseModel):
+    """A length of a body that a check is about, with those of people of its stature.
+
+    `usual_m`: that of a person of this stature. `low_m` and `high_m`: the range that people of it
+    have; null where the check compares with one person only.
+    """
+
+    name: LengthName
+    length_m: float
+    usual_m: float
+    low_m: float | None = None
+    high_m: float | None = None
+
+
 class BodyCheck(BaseModel):
     """One thing that was checked about a body.
 
     `parts`: the body parts that the check is about. `value` and `limit`: what was measured, and
-    what it was compared with. `notes` are sentences about the result.
+    what it was compared with. `lengths` are those that the result comes from, for a stature of
+    `stature_m`. `notes` are sentences about the result.
     """
 
     key: CheckKey
@@ -72,6 +101,8 @@ class BodyCheck(BaseModel):
     parts: list[str] = []
     value: float | None = None
     limit: float | None = None
+    lengths: list[CheckedLength] = []
+    stature_m: float | None = None
     notes: list[str] = []
 
 

@@ -20,8 +20,9 @@ from app.platform.context import AppContext
 WITHIN_S = 60.0
 """Time limit of reading a model; one of 32,000 vertices takes about a second."""
 _REMEDY = (
-    "Correct the model in the program that made it, or export it again as glTF binary (.glb) or "
-    "VRM; docs/avatar-configuration.md says what is read."
+    "Open the model in the program that made it, such as Blender or VRoid Studio, correct this, "
+    "and export it as one file: glTF binary (.glb) or VRM. Help, “The configuration of an avatar”, "
+    "lists what is read."
 )
 
 

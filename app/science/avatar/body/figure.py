@@ -18,7 +18,7 @@ from app.science.avatar.body.hulls import Piece, piece_of
 from app.science.avatar.body.humanoid import Humanoid, HumanoidError
 from app.science.avatar.body.parts import FINGERS, PARENT_OF, PART_NAMES, SIDES
 from app.science.avatar.body.proportions import MAX_RATIO, MIN_RATIO, BodyError, segment_lengths
-from app.science.rotations import Vector, v_add, v_length, v_scale, v_subtract
+from app.science.rotations import FloatArray, Vector, v_add, v_length, v_scale, v_subtract
 
 _SHORTEST, _LONGEST = 0.3, 3.0
 _DIGITS = 6
@@ -26,6 +26,20 @@ _JUST_INSIDE = 1e-4
 """Relative margin to the permitted range, as lengths are rounded and scaled afterwards."""
 _KNUCKLES = 0.446
 """Distance from the wrist to the middle knuckle, as a fraction of the hand's length: `fingers`."""
+
+
+@dataclass(frozen=True)
+class UnusualLength:
+    """A length that is unusual for the stature, beside the usual one and its range.
+
+    `name`: one of `proportions.SEGMENT_NAMES`; all lengths in metres.
+    """
+
+    name: str
+    length_m: float
+    usual_m: float
+    low_m: float
+    high_m: float
 
 
 @dataclass(frozen=True)
@@ -60,6 +74,20 @@ class Figure:
     def finger_count(self, side: str) -> int:
         """Return the number of fingers of the left or right hand."""
         return sum(f"{side}{finger}Proximal" in self.places_m for finger in FINGERS)
+
+    def unusual_lengths(self) -> tuple[UnusualLength, ...]:
+        """Return the lengths of the model that are unusual for a person of its stature.
+
+        They are measured again, where joints and pieces are: `segments_m` has the nearest length
+        that a person may have.
+        """
+        skins = {part: np.array(piece.corners_m) for part, piece in self.pieces.items()}
+        expected = segment_lengths(self.stature_m)
+        return tuple(
+            UnusualLength(name, length, usual, MIN_RATIO * usual, MAX_RATIO * usual)
+            for name, length in _measured(self.places_m, skins)
+            if _is_unusual(length, usual := expected[name])
+        )
 
     def scaled(self, stature_m: float) -> "Figure":
         """Return the figure scaled to a person's stature."""
@@ -112,7 +140,9 @@ def figure_of(humanoid: Humanoid) -> Figure:
         raise HumanoidError(f"The model is not a human body: {error}") from error
     notes = list(humanoid.notes)
     segments: dict[str, float] = {}
-    for name, length in _measured(humanoid):
+    skins = {part: own.vertices_m for part, own in humanoid.parts.items()}
+    places = {part: own.place_m for part, own in humanoid.parts.items()}
+    for name, length in _measured(places, skins):
         ratio = length / expected[name]
         if not _SHORTEST <= ratio <= _LONGEST:
             raise HumanoidError(
@@ -120,13 +150,12 @@ def figure_of(humanoid: Humanoid) -> Figure:
                 f" about {expected[name]:.3f} m is expected. Check the bones between which it was"
                 f" measured: {_BETWEEN[name]}."
             )
-        counted = (
-            min(max(ratio, MIN_RATIO + _JUST_INSIDE), MAX_RATIO - _JUST_INSIDE) * expected[name]
-        )
-        if abs(counted - length) > _JUST_INSIDE * length:
+        counted = _counted(length, expected[name])
+        if _is_unusual(length, expected[name]):
             notes.append(
-                f"The {_WORDS[name]} of {length:.3f} m is unusual; masses are computed with"
-                f" {counted:.3f} m."
+                f"The {_WORDS[name]} of {length:.3f} m is unusual: usual for {stature:.2f} m are"
+                f" {MIN_RATIO * expected[name]:.3f} to {MAX_RATIO * expected[name]:.3f} m. Masses"
+                f" are computed with {counted:.3f} m."
             )
         segments[name] = round(counted, _DIGITS)
     pieces = {part: piece_of(own.vertices_m) for part, own in humanoid.parts.items()}
@@ -162,51 +191,69 @@ _BONES = {
 }
 
 
-def _measured(humanoid: Humanoid) -> Iterator[tuple[str, float]]:
-    """Yield the name and the measured length of each segment, the mean of both sides."""
-    places = {part: own.place_m for part, own in humanoid.parts.items()}
+def _counted(length: float, expected: float) -> float:
+    """Return the nearest length that a person may have, of whom another one is expected."""
+    least, most = MIN_RATIO + _JUST_INSIDE, MAX_RATIO - _JUST_INSIDE
+    return min(max(length / expected, least), most) * expected
+
+
+def _is_unusual(length: float, expected: float) -> bool:
+    return abs(_counted(length, expected) - length) > _JUST_INSIDE * length
+
+
+def _measured(
+    places: Mapping[str, Vector], skins: Mapping[str, FloatArray]
+) -> Iterator[tuple[str, float]]:
+    """Yield the name and the measured length of each segment, the mean of both sides.
+
+    `skins`: part -> (N, 3) points of its skin, in the part's own frame.
+    """
     for name, (start, end) in _BONES.items():
         yield name, _mean(dist(places[f"{s}{start}"], places[f"{s}{end}"]) for s in SIDES)
     for name, part in (("shoulders", "UpperArm"), ("hips", "UpperLeg")):
         yield name, places[f"Right{part}"][0] - places[f"Left{part}"][0]
     if "Neck" in places:
         yield "trunk", places["Neck"][1] - places["Hips"][1]
-    hands = [length for side in SIDES for length in _hand(humanoid, side)]
+    hands = [length for side in SIDES for length in _hand(places, skins, side)]
     if hands:
         yield "hand", _mean(iter(hands))
-    feet = [length for side in SIDES for length in _foot(humanoid, side)]
+    feet = [length for side in SIDES for length in _foot(places, skins, side)]
     if feet:
         yield "foot", _mean(iter(feet))
 
 
-def _hand(humanoid: Humanoid, side: str) -> Iterator[float]:
+def _hand(
+    places: Mapping[str, Vector], skins: Mapping[str, FloatArray], side: str
+) -> Iterator[float]:
     """Yield the length of a hand, measured on its skin, or else estimated from its middle knuckle.
 
     Yield nothing for a hand without skin and middle finger.
     """
     outwards = -1.0 if side == "Left" else 1.0
-    wrist = humanoid.parts[f"{side}Hand"].place_m[0]
+    wrist = places[f"{side}Hand"][0]
     names = [f"{side}Hand", *(part for part in PART_NAMES if _is_finger(part, side))]
     reaches = [
-        float((outwards * (own.vertices_m[:, 0] + own.place_m[0] - wrist)).max())
-        for own in (humanoid.parts[name] for name in names if name in humanoid.parts)
-        if len(own.vertices_m)
+        float((outwards * (skins[name][:, 0] + places[name][0] - wrist)).max())
+        for name in names
+        if len(skins.get(name, ()))
     ]
     if reaches:
         yield max(reaches)
-    elif f"{side}MiddleProximal" in humanoid.parts:
-        knuckle = humanoid.parts[f"{side}MiddleProximal"].place_m[0]
+    elif f"{side}MiddleProximal" in places:
+        knuckle = places[f"{side}MiddleProximal"][0]
         yield outwards * (knuckle - wrist) / _KNUCKLES
 
 
-def _foot(humanoid: Humanoid, side: str) -> Iterator[float]:
-    skins = [
-        own.vertices_m[:, 2] + own.place_m[2]
+def _foot(
+    places: Mapping[str, Vector], skins: Mapping[str, FloatArray], side: str
+) -> Iterator[float]:
+    soles = [
+        skins[name][:, 2] + places[name][2]
         for name in (f"{side}Foot", f"{side}Toes")
-        if (own := humanoid.parts.get(name)) is not None and len(own.vertices_m)
+        if len(skins.get(name, ()))
     ]
-    if skins:
-        along = np.concatenate(skins)
+    if soles:
+        along = np.concatenate(soles)
         yield float(along.max() - along.min())
 
 

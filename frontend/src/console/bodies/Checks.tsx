@@ -45,12 +45,38 @@ function Found({ check }: { readonly check: BodyCheck }): JSX.Element {
         })}
       </span>
       {(check.parts ?? []).length > 0 && <Parts parts={check.parts ?? []} />}
+      {(check.lengths ?? []).length > 0 && <Lengths check={check} />}
       {(check.notes ?? []).map((note) => (
         <span key={note} className={classes.found}>
           {note}
         </span>
       ))}
     </>
+  );
+}
+
+/** The lengths that a result comes from, each with what is usual in people of that stature. */
+function Lengths({ check }: { readonly check: BodyCheck }): JSX.Element {
+  const { t, language } = useTexts();
+  const centimetres = (value: number) => decimals(100 * value, language, 1);
+  return (
+    <ul className={`${classes.lengths} numbers`}>
+      {check.lengths.map(({ name, length_m, usual_m, low_m = null, high_m = null }) => {
+        const hasRange = low_m !== null && high_m !== null;
+        return (
+          <li key={name}>
+            <strong>{t(`bodies.length.${name}`)}</strong>{" "}
+            {t(hasRange ? "bodies.length.range" : "bodies.length.usual", {
+              length: centimetres(length_m),
+              usual: centimetres(usual_m),
+              low: centimetres(low_m ?? usual_m),
+              high: centimetres(high_m ?? usual_m),
+              stature: decimals(100 * (check.stature_m ?? 0), language, 0),
+            })}
+          </li>
+        );
+      })}
+    </ul>
   );
 }
 

@@ -4,7 +4,7 @@ import { BLOCK_COLOURS, type BlockTone } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, type PointerEvent } from "react";
 import { useTexts } from "../i18n";
-import { isActive, toneOf } from "./events";
+import { clockAt, endOf, isEverPaused, toneOf } from "./events";
 import classes from "./Replay.module.css";
 import type { Lane } from "./useLane";
 
@@ -21,7 +21,7 @@ export function Tracks({ lanes, duration, time, onSeek }: TracksProps): JSX.Elem
   const { t, language } = useTexts();
   const replay = lanes[0]?.replay;
   const isGap = lanes[0]?.movement?.gaps.some(([a, b]) => a < time && time < b) ?? false;
-  const state = isGap ? "gap" : replay && isActive(replay, time) ? "active" : "standing";
+  const state = isGap ? "gap" : replay === undefined ? "standing" : clockAt(replay, time);
   const seek = (event: PointerEvent<HTMLDivElement>) => {
     if (event.buttons !== 1) return;
     const { left, width } = event.currentTarget.getBoundingClientRect();
@@ -87,11 +87,13 @@ const LaneRows = memo(function LaneRows({ lane, duration, named }: LaneRowsProps
   const boxes = replay.contacts.filter(({ surface_kind }) => surface_kind !== "side");
   const sides = replay.contacts.filter(({ surface_kind }) => surface_kind === "side");
   const width = { "--duration": Math.max(duration, 1e-3) } as CSSProperties;
+  const end = endOf(replay);
   return (
     <div role="img" aria-label={`${t("replay.tracks")}: ${lane.label}`} style={width}>
       {named && <div className={classes.rowsName}>{lane.label}</div>}
       <Row name={t("replay.track.clock")}>
-        <Bar kind="standing" from={0} to={replay.duration_s} />
+        <Bar kind="standing" from={0} to={end} />
+        {end < replay.duration_s && <Bar kind="over" from={end} to={replay.duration_s} />}
         {replay.active.map((one) => (
           <Bar key={one.begin_s} kind="active" from={one.begin_s} to={one.end_s} />
         ))}
@@ -151,7 +153,7 @@ function Row({
   );
 }
 
-type BarKind = "active" | "standing" | "gap" | BlockTone;
+type BarKind = "active" | "standing" | "over" | "gap" | BlockTone;
 
 interface BarProps {
   readonly kind: BarKind;
@@ -184,7 +186,9 @@ function TrackKey({ lanes }: Pick<TracksProps, "lanes">): JSX.Element {
   );
   const hasGaps = lanes.some(({ movement }) => (movement?.gaps.length ?? 0) > 0);
   const kinds: readonly Exclude<BarKind, "plain">[] = [
-    ...(["active", "standing"] as const),
+    "active",
+    ...(lanes.some(({ replay }) => isEverPaused(replay)) ? (["standing"] as const) : []),
+    ...(lanes.some(({ replay }) => endOf(replay) < replay.duration_s) ? (["over"] as const) : []),
     ...(hasGaps ? (["gap"] as const) : []),
     ...(["good", "odd", "touched", "bad"] as const).filter((kind) => present.has(kind)),
   ];

@@ -183,6 +183,45 @@ export function activeAt({ active }: Pick<Replay, "active">, time: number): numb
   return shown;
 }
 
+const ENDS = new Set<ReplayMoment["what"]>(["time_up", "ended"]);
+const STOPS = new Set<ReplayMoment["what"]>(["paused", "walk_back_started"]);
+/** Active time and the moments of its changes come from different counts, seconds. */
+const SAME_S = 0.05;
+
+/** When the phase's clock stopped for good; what was recorded later counts for nothing. */
+export function endOf({
+  active,
+  moments,
+  duration_s,
+}: Pick<Replay, "active" | "moments" | "duration_s">): number {
+  const last = active.at(-1)?.end_s ?? 0;
+  const end = moments.find(({ what, t_s }) => ENDS.has(what) && t_s > last - SAME_S);
+  if (end !== undefined) return Math.min(Math.max(end.t_s, last), duration_s);
+  // The headset has not reported the end: it was where the clock last ran, unless it was paused.
+  const before = moments.findLast(({ what }) => what !== "voided");
+  return before === undefined || STOPS.has(before.what) ? duration_s : Math.min(last, duration_s);
+}
+
+/** Whether the clock ran at a time, was paused, or had stopped for good. */
+export function clockAt(
+  replay: Pick<Replay, "active" | "moments" | "duration_s">,
+  time: number,
+): "active" | "standing" | "over" {
+  if (isActive(replay, time)) return "active";
+  const end = endOf(replay);
+  return end < replay.duration_s && time >= end ? "over" : "standing";
+}
+
+/** Whether the clock was paused for a time that can be seen. */
+export function isEverPaused(replay: Pick<Replay, "active" | "moments" | "duration_s">): boolean {
+  let ran = 0;
+  for (const { begin_s, end_s } of replay.active) {
+    if (begin_s - ran > SAME_S) return true;
+    ran = end_s;
+  }
+  return endOf(replay) - ran > SAME_S;
+}
+
 export const isActive = ({ active }: Pick<Replay, "active">, time: number): boolean =>
   active.some(({ begin_s, end_s }) => begin_s <= time && time < end_s);
 

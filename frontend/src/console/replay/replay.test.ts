@@ -4,8 +4,11 @@ import { addressOf, paramsFrom } from "./address";
 import { errorsAt, largest, overall } from "./ErrorMap";
 import {
   activeAt,
+  clockAt,
+  endOf,
   eventsOf,
   isActive,
+  isEverPaused,
   jumpFrom,
   latestEventAt,
   tonesAt,
@@ -68,6 +71,32 @@ describe("the times of a moment", () => {
       true,
       false,
     ]);
+  });
+
+  it("stop for good at the end: what is recorded after it is not a pause", () => {
+    const moments = [
+      { what: "time_up", t_s: 65.02, active_s: 60, cause: null },
+      { what: "ended", t_s: 67, active_s: 60, cause: null },
+    ] as const;
+    const replay = { ...paused, moments, duration_s: 68 };
+    expect(endOf(replay)).toBe(65.02);
+    expect([9, 12, 64, 66, 68].map((time) => clockAt(replay, time))).toEqual([
+      "active",
+      "standing",
+      "active",
+      "over",
+      "over",
+    ]);
+    expect(isEverPaused(replay)).toBe(true);
+    // A phase that ended in a pause was paused until then.
+    const inPause = { ...replay, moments: moments.slice(1) };
+    expect([66, 67].map((time) => clockAt(inPause, time))).toEqual(["standing", "over"]);
+    // The headset was lost, and never reported the end: while the clock ran, or in a pause.
+    const lost = (what: "resumed" | "paused") => [{ what, t_s: 15, active_s: 10, cause: null }];
+    expect(endOf({ ...replay, moments: lost("resumed") })).toBe(65);
+    expect(endOf({ ...replay, moments: lost("paused") })).toBe(68);
+    const whole = { active: paused.active.slice(0, 1), moments, duration_s: 10 };
+    expect(isEverPaused(whole)).toBe(false);
   });
 
   it("give the time of day by the server's seconds", () => {

@@ -4370,7 +4370,8 @@ export interface components {
          * @description One thing that was checked about a body.
          *
          *     `parts`: the body parts that the check is about. `value` and `limit`: what was measured, and
-         *     what it was compared with. `notes` are sentences about the result.
+         *     what it was compared with. `lengths` are those that the result comes from, for a stature of
+         *     `stature_m`. `notes` are sentences about the result.
          */
         readonly BodyCheck: {
             /**
@@ -4378,6 +4379,11 @@ export interface components {
              * @enum {string}
              */
             readonly key: "parts" | "fingers" | "rest_pose" | "proportions" | "reach" | "triangles" | "hulls" | "licence" | "wearing";
+            /**
+             * Lengths
+             * @default []
+             */
+            readonly lengths: readonly components["schemas"]["CheckedLength"][];
             /** Limit */
             readonly limit?: number | null;
             /**
@@ -4390,6 +4396,8 @@ export interface components {
              * @default []
              */
             readonly parts: readonly string[];
+            /** Stature M */
+            readonly stature_m?: number | null;
             /**
              * Status
              * @enum {string}
@@ -4796,6 +4804,28 @@ export interface components {
             readonly unit?: ("s" | "ms" | "mm" | "Hz" | "GB" | "joints" | "phases" | "instruments" | "texts") | null;
             /** Value */
             readonly value?: number | null;
+        };
+        /**
+         * CheckedLength
+         * @description A length of a body that a check is about, with those of people of its stature.
+         *
+         *     `usual_m`: that of a person of this stature. `low_m` and `high_m`: the range that people of it
+         *     have; null where the check compares with one person only.
+         */
+        readonly CheckedLength: {
+            /** High M */
+            readonly high_m?: number | null;
+            /** Length M */
+            readonly length_m: number;
+            /** Low M */
+            readonly low_m?: number | null;
+            /**
+             * Name
+             * @enum {string}
+             */
+            readonly name: "upper_arm" | "forearm" | "hand" | "thigh" | "shank" | "foot" | "trunk" | "shoulders" | "hips" | "arm" | "shoulder_height";
+            /** Usual M */
+            readonly usual_m: number;
         };
         /**
          * CheckRequest
@@ -5437,7 +5467,8 @@ export interface components {
          * @description The demo lab: how many of its simulated people are through.
          *
          *     `state`: `loading` while they are on their way; `stopped` if some are missing, because the
-         *     server stopped or somebody ended it; `failed` if they could not go on, with the reason.
+         *     server stopped or somebody ended it; `failed` if they could not go on, with the reason;
+         *     `absent` with a `message` if it cannot be loaded here.
          */
         readonly DemoView: {
             /** Completed */

@@ -14,6 +14,7 @@ from app.features.results.analysis.material import OWN_BODY
 from app.models import HumanoidRow
 from app.protocol.humanoid import figure_json
 from app.science.avatar.body import figure_of
+from app.science.avatar.body.proportions import segment_lengths
 from tests.api.people import sign_in
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.avatar.test_avatars import PATH as AVATARS
@@ -186,15 +187,37 @@ def test_the_list_says_what_asks_for_attention(fresh_lab: Lab) -> None:
     with fresh_lab.database.reading() as db:
         assert reach_off_m(parsed_figure(short)) == pytest.approx(0.45, abs=0.05)
         row = db.get_one(HumanoidRow, own)
-        checks = {one.key: one.status for one in checks_of(row, parsed_figure(short))}
-        assert attention_of(row.triangles, reach_off_m(parsed_figure(short)), asked_terms(row)) == [
-            key for key, status in checks.items() if status == "warn"
-        ]
-    assert [key for key, status in checks.items() if status == "warn"] == [
-        "reach",
-        "triangles",
-        "wearing",
-    ]
+        checks = {one.key: one for one in checks_of(row, parsed_figure(short))}
+        asked = [key for key, one in checks.items() if one.status == "warn"]
+        found = attention_of(row.triangles, reach_off_m(parsed_figure(short)), asked_terms(row))
+    assert asked == found == ["reach", "triangles", "wearing"]
+    arm, *others = checks["reach"].lengths
+    assert arm.name == "arm"
+    assert (arm.length_m, arm.usual_m) == pytest.approx((0.3 * 0.93 * 0.564, 0.564), abs=0.002)
+    assert [one.name for one in others] == ["shoulders"]
+
+
+def test_unusual_proportions_are_named_with_their_usual_range() -> None:
+    """Forearms of 55 % of the usual length are told with what people of that stature have."""
+
+    def shortened(document: Json) -> None:
+        for node in document["nodes"]:
+            if node.get("name") in {"LeftHand", "RightHand"}:
+                node["matrix"][12:15] = [0.55 * one for one in node["matrix"][12:15]]
+
+    usual = HumanoidRow(figure={}, triangles=None, licence=None)
+    figure = figure_of(read_humanoid(humanoid_file(Model(edit=shortened))).humanoid)
+    check = {one.key: one for one in checks_of(usual, figure)}["proportions"]
+    (found,) = check.lengths
+    person_m = segment_lengths(figure.stature_m)["forearm"]
+    assert (check.status, found.name, check.stature_m) == ("note", "forearm", figure.stature_m)
+    assert found.length_m == pytest.approx(0.55 * 0.93 * person_m, rel=1e-3)
+    assert found.usual_m == person_m
+    assert (found.low_m, found.high_m) == pytest.approx((0.7 * person_m, 1.3 * person_m))
+    even = {
+        one.key: one for one in checks_of(usual, figure_of(read_humanoid(humanoid_file()).humanoid))
+    }
+    assert (even["proportions"].status, even["proportions"].lengths) == ("good", [])
 
 
 @pytest.mark.one_engine

@@ -85,6 +85,9 @@ def test_a_model_that_is_not_humanoid_is_refused(fresh_lab: Lab) -> None:
     """A model without human parts, or a damaged file, is refused and not stored."""
     dog = error(upload(fresh_lab, dog_file(), "dog.glb"), 422, "invalid_input")
     assert "no LeftUpperArm, LeftLowerArm, LeftHand" in dog["message"]
+    # What to do is said in words: who uploads has the program, not its repository.
+    assert "export it as one file" in dog["remedy"]
+    assert "docs/" not in dog["remedy"]
     cut = error(upload(fresh_lab, FIVE[:4000]), 422, "invalid_input")
     assert f"4000 of {len(FIVE)} bytes" in cut["message"]
 
