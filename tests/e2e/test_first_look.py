@@ -7,7 +7,7 @@ from playwright.sync_api import Page, expect
 
 from tests.e2e.people import Experimenter
 from tests.features.lab import STUDY
-from tests.support.browser import ColorScheme
+from tests.support.browser import ColorScheme, PageWatch
 from tests.support.server import LiveServer
 
 Axe = Callable[[Page], list[str]]
@@ -108,3 +108,37 @@ def test_a_loader_does_not_move_if_motion_is_reduced(
         }"""
     )
     assert repeats == ["1", "1e-05s"]
+
+
+def test_a_page_that_is_older_than_the_server_says_so(
+    experimenter: Experimenter, page_watch: PageWatch, axe: Axe, screenshot: Screenshot
+) -> None:
+    """A part of the console that is gone is told in words: updated, or out of reach; then reload.
+
+    The sidebar stays usable, and a server that is out of reach is not reloaded into nothing.
+    """
+    page = experimenter.page
+    for message in ("Failed to", "net::ERR", "dynamically imported module", "404"):
+        page_watch.allow(message)
+    gone = "**/assets/CapturesPage-*.js"
+    page.route(gone, lambda route: route.fulfill(status=404, body="gone"))
+    newer = '<script type="module" src="/assets/console-newer.js"></script>'
+    page.route(lambda url: url.endswith("/"), lambda route: route.fulfill(body=newer))
+    page.get_by_role("link", name="Captures").click()
+    notice = page.get_by_role("alert")
+    expect(notice).to_contain_text("This page is older than the server")
+    assert axe(page) == []
+    screenshot(page, "older-than-the-server")
+    page.get_by_role("link", name="Studies", exact=True).first.click()
+    expect(page.get_by_role("heading", name="Studies", exact=True)).to_be_visible()
+
+    page.unroute_all()
+    page.route(gone, lambda route: route.abort())
+    page.route(lambda url: url.endswith("/"), lambda route: route.abort())
+    page.get_by_role("link", name="Captures").click()
+    notice.get_by_role("button", name="Reload").click()
+    expect(notice).to_contain_text("The server is not responding")
+    screenshot(page, "out-of-reach")
+    page.unroute_all()
+    notice.get_by_role("button", name="Reload").click()
+    expect(page.get_by_role("heading", name="Captures", exact=True)).to_be_visible()

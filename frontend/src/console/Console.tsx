@@ -6,6 +6,7 @@
  */
 import { Center, Loader } from "@mantine/core";
 import type { Account } from "@shared/api/types";
+import { Boundary } from "@shared/ui/Boundary";
 import { Activity, type JSX, Suspense, useEffect } from "react";
 import { Router, useLocation } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
@@ -74,13 +75,23 @@ function Shell({ account }: { readonly account: Account }): JSX.Element {
         {t("app.skip")}
       </button>
       <Frame account={account}>
-        <Suspense fallback={<Waiting />}>
-          <Routes account={account} />
-        </Suspense>
+        <Page account={account} />
       </Frame>
       <FocusOnPage />
       {may(account.role, "tryout") && <TryoutBar />}
     </Router>
+  );
+}
+
+/** The page of the address; one that cannot be shown leaves the sidebar usable. */
+function Page({ account }: { readonly account: Account }): JSX.Element {
+  const [address] = useLocation();
+  return (
+    <Boundary place={address}>
+      <Suspense fallback={<Waiting />}>
+        <Routes account={account} />
+      </Suspense>
+    </Boundary>
   );
 }
 

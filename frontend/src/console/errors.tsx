@@ -1,16 +1,11 @@
 /** The console's wording of errors, and a notice that uses it. */
-import { ErrorNotice, type ErrorTexts } from "@shared/ui/Notice";
+import { ErrorNotice, type ErrorTexts, errorTexts } from "@shared/ui/Notice";
 import type { JSX } from "react";
 import { useTexts } from "./i18n";
 
 export function useErrorTexts(): ErrorTexts {
   const { t } = useTexts();
-  return {
-    unreachable: t("error.unreachable"),
-    unreachableRemedy: t("error.unreachableRemedy"),
-    unexpected: t("error.unexpected"),
-    retry: t("error.retry"),
-  };
+  return errorTexts(t);
 }
 
 interface FailureProps {

@@ -1,5 +1,6 @@
 /** Says that a body is being loaded, or why it cannot be shown. */
 import { Button, Loader } from "@mantine/core";
+import { isUnloaded } from "@shared/ui/unloaded";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import classes from "./BodyViewer.module.css";
@@ -24,7 +25,7 @@ export function BodyNotice({ body, instead = false }: BodyNoticeProps): JSX.Elem
   return (
     <span className={instead ? classes.corner : classes.middle} role="status">
       {t(instead ? "bodyView.failed.skeleton" : "bodyView.failed", {
-        reason: body.error?.message ?? "",
+        reason: isUnloaded(body.error) ? t("page.unknown") : (body.error?.message ?? ""),
       })}
       <Button size="compact-xs" variant="default" onClick={body.retry}>
         {t("error.retry")}

@@ -7,6 +7,7 @@
 import { ActionIcon, Drawer, Loader } from "@mantine/core";
 import { useDisclosure, useLocalStorage, useMediaQuery } from "@mantine/hooks";
 import type { Account } from "@shared/api/types";
+import { Boundary } from "@shared/ui/Boundary";
 import { Icon } from "@shared/ui/Icon";
 import { Mark } from "@shared/ui/Mark";
 import { type JSX, lazy, type ReactNode, Suspense, useEffect } from "react";
@@ -64,9 +65,11 @@ export function Frame({
         {children}
       </main>
       {searching && (
-        <Suspense fallback={<Loader className={classes.loading ?? ""} />}>
-          <Palette account={account} address={address} onClose={search.close} />
-        </Suspense>
+        <Boundary place={address}>
+          <Suspense fallback={<Loader className={classes.loading ?? ""} />}>
+            <Palette account={account} address={address} onClose={search.close} />
+          </Suspense>
+        </Boundary>
       )}
     </div>
   );

@@ -1,5 +1,7 @@
 /** The console's texts in German. */
+
 import { formDe } from "@shared/forms/texts";
+import { pageDe } from "@shared/ui/pageTexts";
 import { alarmsDe } from "../cockpit/alarms/texts";
 import { bodyPanelDe } from "../cockpit/body/texts";
 import { sideDe } from "../cockpit/record/texts";
@@ -9,6 +11,7 @@ import { labTrackersDe } from "../cockpit/trackers/texts";
 import type { en } from "./en";
 
 export const de: Record<keyof typeof en, string> = {
+  ...pageDe,
   ...formDe,
   ...alarmsDe,
   ...commandsDe,

@@ -1,5 +1,7 @@
 /** The console's texts in English; `de.ts` has the same keys. */
+
 import { formEn } from "@shared/forms/texts";
+import { pageEn } from "@shared/ui/pageTexts";
 import { alarmsEn } from "../cockpit/alarms/texts";
 import { bodyPanelEn } from "../cockpit/body/texts";
 import { sideEn } from "../cockpit/record/texts";
@@ -8,6 +10,7 @@ import { sessionEn } from "../cockpit/step/texts";
 import { labTrackersEn } from "../cockpit/trackers/texts";
 
 export const en = {
+  ...pageEn,
   ...formEn,
   ...alarmsEn,
   ...commandsEn,

@@ -12,6 +12,7 @@ import { answersOf } from "@shared/forms/questions";
 import { formTexts } from "@shared/forms/texts";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { inLanguage } from "@shared/text";
+import { Boundary } from "@shared/ui/Boundary";
 import { Notice } from "@shared/ui/Notice";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { type JSX, lazy, Suspense, useMemo, useState } from "react";
@@ -54,14 +55,16 @@ export function TryIt({ preview, yaml }: TryItProps): JSX.Element {
         </Button>
       </div>
       <div className={classes.try}>
-        <Paper
-          key={round}
-          preview={preview}
-          yaml={yaml}
-          language={shown}
-          draft={draft}
-          onDraft={setDraft}
-        />
+        <Boundary>
+          <Paper
+            key={round}
+            preview={preview}
+            yaml={yaml}
+            language={shown}
+            draft={draft}
+            onDraft={setDraft}
+          />
+        </Boundary>
         <Scores preview={preview} yaml={yaml} draft={draft} />
       </div>
     </>

@@ -6,8 +6,11 @@ interface Drawing {
   dispose(): void;
 }
 
-/** `flat` if the browser has no WebGL or refuses a context. */
-export type DrawingState = "loading" | "space" | "flat";
+/**
+ * `flat` if the browser has no WebGL or refuses a context, `unloaded` if the code could not be
+ * loaded, of which the page says why.
+ */
+export type DrawingState = "loading" | "space" | "flat" | "unloaded";
 
 /**
  * Draw on an element while it is on the page. `load` imports three.js and the drawing code, and
@@ -24,14 +27,19 @@ export function useDrawing<T extends Drawing>(
     if (element === null) return;
     let cancelled = false;
     let tidy = () => {};
-    void load().then((make) => {
-      if (cancelled) return;
-      const mounted = mount(element, make);
-      if (mounted === null) return setWay("flat");
-      tidy = mounted.tidy;
-      setDrawing(mounted.drawing);
-      setWay("space");
-    });
+    void load().then(
+      (make) => {
+        if (cancelled) return;
+        const mounted = mount(element, make);
+        if (mounted === null) return setWay("flat");
+        tidy = mounted.tidy;
+        setDrawing(mounted.drawing);
+        setWay("space");
+      },
+      () => {
+        if (!cancelled) setWay("unloaded");
+      },
+    );
     return () => {
       cancelled = true;
       setDrawing(null);

@@ -4,6 +4,7 @@ import type { JSX, ReactNode } from "react";
 import { ApiError, Unreachable } from "../api/request";
 import { Icon, type IconName } from "./Icon";
 import classes from "./Notice.module.css";
+import { isUnloaded } from "./unloaded";
 
 export type Tone = "info" | "warn" | "bad" | "sim";
 
@@ -45,14 +46,18 @@ export interface ErrorTexts {
   readonly unreachableRemedy: string;
   readonly unexpected: string;
   readonly retry: string;
+  readonly unloaded: string;
 }
 
 /** A page's own wording of errors, which it keeps under these keys. */
-export const errorTexts = (t: (key: `error.${keyof ErrorTexts}`) => string): ErrorTexts => ({
+export const errorTexts = (
+  t: (key: `error.${Exclude<keyof ErrorTexts, "unloaded">}` | "page.unknown") => string,
+): ErrorTexts => ({
   unreachable: t("error.unreachable"),
   unreachableRemedy: t("error.unreachableRemedy"),
   unexpected: t("error.unexpected"),
   retry: t("error.retry"),
+  unloaded: t("page.unknown"),
 });
 
 interface ErrorNoticeProps {
@@ -85,6 +90,8 @@ export function describe(
   if (error instanceof Unreachable) {
     return { message: texts.unreachable, remedy: texts.unreachableRemedy };
   }
+  // The page says beside it why, and what to do.
+  if (isUnloaded(error)) return { message: texts.unloaded, remedy: "" };
   return { message: texts.unexpected, remedy: error instanceof Error ? error.message : "" };
 }
 

@@ -8,6 +8,8 @@ import { createRoot } from "react-dom/client";
 import { I18nextProvider } from "react-i18next";
 import { ApiError } from "../api/request";
 import { theme } from "../theme/theme";
+import { Boundary, UnloadedBar } from "./Boundary";
+import { followImports } from "./unloaded";
 import "@mantine/core/styles.css";
 import "@mantine/notifications/styles.css";
 import "../theme/tokens.css";
@@ -43,7 +45,8 @@ function Page({ translations, children }: PageProps): JSX.Element {
         <I18nextProvider i18n={translations}>
           <QueryClientProvider client={queries}>
             <Notifications position="bottom-right" autoClose={5000} />
-            {children}
+            <Boundary>{children}</Boundary>
+            <UnloadedBar />
           </QueryClientProvider>
         </I18nextProvider>
       </MantineProvider>
@@ -54,5 +57,6 @@ function Page({ translations, children }: PageProps): JSX.Element {
 export function mountPage(page: PageProps): void {
   const root = document.getElementById("root");
   if (root === null) throw new Error("The page has no element #root to draw into.");
+  followImports();
   createRoot(root).render(<Page {...page} />);
 }

@@ -1,8 +1,11 @@
 /** The participant's texts in German. */
+
 import { formDe } from "@shared/forms/texts";
+import { pageDe } from "@shared/ui/pageTexts";
 import type { en } from "./en";
 
 export const de: Record<keyof typeof en, string> = {
+  ...pageDe,
   ...formDe,
   "pair.title": "Dieses Tablet verbinden",
   "pair.lead":

@@ -1,7 +1,10 @@
 /** The participant's texts in English; `de.ts` has the same keys. */
+
 import { formEn } from "@shared/forms/texts";
+import { pageEn } from "@shared/ui/pageTexts";
 
 export const en = {
+  ...pageEn,
   ...formEn,
   "pair.title": "Connect this tablet",
   "pair.lead": "Enter the code shown on the experimenter's screen, or scan its QR code.",

@@ -8,6 +8,7 @@ import { Button, Loader, SegmentedControl, Title } from "@mantine/core";
 import { ApiError, Unreachable } from "@shared/api/request";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { codeFromAddress, writtenCode } from "@shared/pairingCode";
+import { UnloadedNotice } from "@shared/ui/Boundary";
 import { CodeEntry } from "@shared/ui/CodeEntry";
 import { Mark } from "@shared/ui/Mark";
 import { ErrorNotice, errorTexts, Notice } from "@shared/ui/Notice";
@@ -252,7 +253,7 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
 
 function VisitNotices({ visit }: { readonly visit: VisitState }): JSX.Element {
   const { t } = useTexts();
-  const { failure, problem, isReady, isConnected, vr, isOver } = visit;
+  const { failure, problem, isReady, isConnected, vr, isOver, isUnloaded } = visit;
   return (
     <>
       {failure !== null && (
@@ -265,7 +266,8 @@ function VisitNotices({ visit }: { readonly visit: VisitState }): JSX.Element {
           {problem}
         </Notice>
       )}
-      {failure === null && !isReady && <Waiting text={t("enter.connecting")} />}
+      {isUnloaded && <UnloadedNotice />}
+      {failure === null && !isReady && !isUnloaded && <Waiting text={t("enter.connecting")} />}
       {failure === null && isReady && !isConnected && (
         <Notice tone="warn">{t("enter.offline")}</Notice>
       )}

@@ -1,4 +1,5 @@
 /** The session that this headset takes part in: its connection, and whether VR is shown. */
+import { isUnloaded } from "@shared/ui/unloaded";
 import { useCallback, useEffect, useRef, useState } from "react";
 import { listenTo } from "../desktop/input";
 import type { Vr } from "../session";
@@ -29,6 +30,8 @@ export interface VisitState {
   readonly vr: VrState;
   /** Why VR could not be shown. */
   readonly problem: string | null;
+  /** A part of this page could not be loaded; the page says why, and what to do. */
+  readonly isUnloaded: boolean;
   /** Show VR; call it in the handler of a click, which browsers demand. */
   readonly enter: () => void;
   /** Show the study on this screen instead, moved by mouse and keyboard; returns how to end it. */
@@ -51,9 +54,11 @@ export function useVisit(pairing: Pairing): VisitState {
   const [isBetween, setBetween] = useState(false);
   const [vrState, setVrState] = useState<VrState>("not_yet");
   const [problem, setProblem] = useState<string | null>(null);
+  const [isPartMissing, setUnloaded] = useState(false);
   const vr = useRef<Vr | null>(null);
   const fail = useCallback((error: unknown) => {
-    if (error instanceof TelemetryError) setFailure(error.failure);
+    if (isUnloaded(error)) setUnloaded(true);
+    else if (error instanceof TelemetryError) setFailure(error.failure);
     else setProblem(error instanceof Error ? error.message : String(error));
   }, []);
 
@@ -126,6 +131,7 @@ export function useVisit(pairing: Pairing): VisitState {
     failure: status?.failure ?? failure,
     vr: vrState,
     problem,
+    isUnloaded: isPartMissing,
     enter,
     showOnScreen,
   };

@@ -1,8 +1,10 @@
+import { pageDe } from "@shared/ui/pageTexts";
 import { selfTestDe } from "../selftest/texts/de";
 import type { en } from "./en";
 
 /** The texts of the headset's page in German. */
 export const de: Readonly<Record<keyof typeof en, string>> = {
+  ...pageDe,
   ...selfTestDe,
   "enter.title": "An der Studie teilnehmen",
   "enter.lead":

@@ -1,7 +1,9 @@
 /** The texts of the headset's page in English; `de.ts` has the same keys. */
+import { pageEn } from "@shared/ui/pageTexts";
 import { selfTestEn } from "../selftest/texts/en";
 
 export const en = {
+  ...pageEn,
   ...selfTestEn,
   "enter.title": "Enter the study",
   "enter.lead": "Put the headset on and make sure the picture is sharp. Then press the button.",

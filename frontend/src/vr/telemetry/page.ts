@@ -1,6 +1,7 @@
 /**
  * What only a page can do for its telemetry: start the worker, and notice that it is being left.
  */
+import { reportUnloaded } from "@shared/ui/unloaded";
 import type { TelemetryClient, TelemetryOptions } from "./client";
 import type { Surroundings } from "./open";
 import type { FromWorker, Port, ToWorker } from "./port";
@@ -25,9 +26,11 @@ export async function openTelemetryInWorker(
   const port = worker as Port<ToWorker, FromWorker>;
   const client = new PageClient(port, options, performance.timeOrigin);
   worker.addEventListener("error", ({ message }) => {
+    // Without words it is the browser that could not load the worker.
+    if (!message) reportUnloaded(null);
     client.fail({
       code: "worker_failed",
-      message: `the telemetry worker has failed: ${message}`,
+      message: `the telemetry worker has failed: ${message || "it could not be loaded"}`,
       remedy: "Reload this page; it continues as a new run.",
     });
   });

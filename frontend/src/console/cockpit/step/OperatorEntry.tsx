@@ -7,6 +7,7 @@ import { sessions } from "@shared/api/endpoints";
 import type { Administration, SessionView, Step } from "@shared/api/types";
 import { EMPTY_DRAFT } from "@shared/forms/draft";
 import { formTexts } from "@shared/forms/texts";
+import { Boundary } from "@shared/ui/Boundary";
 import { Notice } from "@shared/ui/Notice";
 import { uuid } from "@shared/uuid";
 import { useMutation, useQuery } from "@tanstack/react-query";
@@ -83,7 +84,9 @@ function Entry({ session, stepKey, onClose }: EntryProps): JSX.Element {
         administration === null ? (
           <Notice tone="info" title={t("entry.none")} />
         ) : (
-          <EntryForm session={session} administration={administration} onClose={onClose} />
+          <Boundary>
+            <EntryForm session={session} administration={administration} onClose={onClose} />
+          </Boundary>
         )
       }
     </Loaded>

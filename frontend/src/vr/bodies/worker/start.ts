@@ -1,5 +1,6 @@
 /** What only a page can do for the worker of the bodies: start it, and fetch MuJoCo for it. */
 import wasmUrl from "@mujoco/mujoco/mujoco.wasm?url";
+import { fetchPart, reportUnloaded } from "@shared/ui/unloaded";
 import workerUrl from "./bodiesWorker?worker&url";
 import type { BodiesPort } from "./messages";
 
@@ -16,12 +17,12 @@ export async function fetchBeforehand(): Promise<void> {
 }
 
 export async function startWorker(): Promise<{ port: BodiesPort; wasm: ArrayBuffer }> {
-  const answer = await fetch(wasmUrl);
-  if (!answer.ok) throw new Error(`MuJoCo could not be loaded (HTTP ${answer.status}).`);
-  const wasm = await answer.arrayBuffer();
+  const wasm = await fetchPart(wasmUrl);
   const worker = new Worker(workerUrl, { type: "module" });
   const port = worker as unknown as BodiesPort;
   worker.addEventListener("error", ({ message }) => {
+    // Without words it is the browser that could not load the worker.
+    if (!message) reportUnloaded(null);
     const problem = message || "it could not be started";
     port.onmessage?.({ data: { kind: "failed", problem } } as MessageEvent);
   });

@@ -50,7 +50,11 @@ export function useSelfTest(pairing: Pairing, visit: VisitState, language: strin
 
   // Before the button can be pressed: a click's permission to enter VR lasts for seconds only.
   useEffect(() => {
-    if (isReady) void import("../../selftest").then((module) => setTest(() => module.SelfTest));
+    if (!isReady) return;
+    // The page says why this could not be loaded; the session does not need it.
+    import("../../selftest")
+      .then((module) => setTest(() => module.SelfTest))
+      .catch(() => undefined);
   }, [isReady]);
 
   const deliver = useCallback(async () => {
