@@ -2,8 +2,8 @@
 
 Of the k nearest, the i-th has weight w_i = 1 - d_i / d_k, divided by the sum of all: linear in
 distance, zero for the farthest. That makes the result a continuous function of the query: a walk
-that becomes one of the neighbours starts with weight 0. If all k are equally far, they have the
-same weight.
+that becomes one of the neighbours starts with weight 0. If all k are equally far, but for rounding,
+they have the same weight.
 """
 
 from dataclasses import dataclass
@@ -57,7 +57,8 @@ def tree_of(points: FloatArray) -> Tree:
         if last - first <= LEAF or not spread.max() > 0.0:
             continue
         axis, half = int(np.argmax(spread)), (last - first) // 2
-        sorting = np.argpartition(own[:, axis], half)
+        # Not partitioned: the order of equal numbers would depend on the processor.
+        sorting = np.argsort(own[:, axis], kind="stable")
         order[first:last] = order[first:last][sorting]
         nodes[at][:3] = [axis, float(own[sorting[half], axis]), len(nodes)]
         waiting += [len(nodes), len(nodes) + 1]

@@ -11,6 +11,8 @@ from app.science.walking.maps.densifying import IntArray
 
 STACK = 128
 """Size of the search stack, sufficient for any tree that fits into memory."""
+ROUNDING = 1e-9
+"""Mean weight below which distances differ by rounding alone."""
 
 
 @compiled
@@ -114,4 +116,4 @@ def weigh(far: FloatArray) -> None:
         far[at] = 1.0 - far[at] / farthest if farthest > 0.0 else 1.0
         total += far[at]
     for at in range(len(far)):
-        far[at] = far[at] / total if total > 0.0 else 1.0 / len(far)
+        far[at] = far[at] / total if total > ROUNDING * len(far) else 1.0 / len(far)
