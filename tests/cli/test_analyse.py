@@ -447,3 +447,43 @@ def test_a_usual_code_for_missing_far_from_all_other_values_is_noted(
     shares = _written(tmp_path, ["person,latency,score", *rows])
     assert ",99\n" in shares.read_text()
     assert _COMMAND.figures(shares, *_FACTOR)["warnings"] == []
+
+
+def _with_level(rows: list[str], person: str, was: str, now: str) -> list[str]:
+    return [row.replace(f",{was},", f",{now},") if row.startswith(f"{person},") else row
+            for row in rows]  # fmt: skip
+
+
+def test_a_level_that_was_mistyped_once_is_named(tmp_path: Path) -> None:
+    """One row of 1255 instead of 125 leaves nobody complete: the error names its line."""
+    path = _written(tmp_path, _with_level(_lines(), "P2", "125", "1255"))
+    told = _COMMAND.refusal(path, *_FACTOR)
+    assert "Only 0 of 5 subjects" in told
+    assert "latency '1255' is only in line 7 (P2)" in told
+    assert "was '125' meant" in told
+    assert "correct the file" in told
+
+
+def test_a_rare_level_is_noted_where_enough_people_are_complete(tmp_path: Path) -> None:
+    """In 30 people two have a level of their own beside all others: it is noted, and analysed."""
+    rows = [f"P{who},{level},{who % 5 + at}" for who in range(30)
+            for at, level in enumerate(("low", "mid", "high"))]  # fmt: skip
+    extra = [f"P{who},hihg,{who}" for who in (3, 4)]
+    path = _written(tmp_path, ["person,latency,score", *rows, *extra])
+    notes = _COMMAND.figures(path, *_FACTOR)["warnings"]
+    assert any("latency 'hihg' is only in line 92 (P3), 93 (P4)" in note for note in notes)
+    assert any("was 'high' meant" in note for note in notes)
+    plain = _COMMAND.figures(_written(tmp_path, ["person,latency,score", *rows]), *_FACTOR)
+    assert not any("meant" in note or "mistyped" in note for note in plain["warnings"])
+
+
+def test_levels_spelt_almost_alike_are_asked_about(tmp_path: Path) -> None:
+    """`125 ms` and `125ms`, each of half of the rows, are asked about; 0 and 0.0 are one."""
+    rows = [
+        f"P{who},{level},{who % 3 + at}"
+        for who in range(6)
+        for at, level in enumerate(("0 ms", "125 ms" if who % 2 else "125ms"))
+    ]
+    told = _COMMAND.refusal(_written(tmp_path, ["person,latency,score", *rows]), *_FACTOR)
+    assert "latency '125 ms' and '125ms' differ only in capitals, spaces or dashes" in told
+    assert "spell them alike" in told

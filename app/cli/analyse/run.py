@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from app.cli.analyse.doubts import alike_subjects, missing_codes, mistyped_levels
 from app.cli.analyse.families import Family, families_of, mean_interval, tried
 from app.cli.analyse.inputs import TidyInput, read_tidy
 from app.science.statistics import (
@@ -18,7 +19,6 @@ from app.science.statistics import (
     StatisticsError,
     TooFewData,
     aligned_ranks_within,
-    as_number,
     cells_of,
     complete_rows,
     has_order,
@@ -27,8 +27,6 @@ from app.science.statistics import (
 
 _MOST_FACTORS = 2
 _SHOWN = 8
-MISSING_CODES = frozenset({-9999.0, -999.0, -99.0, -9.0, 99.0, 999.0, 9999.0})
-"""Numbers that questionnaires and statistics programs often store for a missing value."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +77,7 @@ class Analysis:
     averaged_over: tuple[str, ...] = ()
     """Columns that tell the values of each cell apart, whose mean was taken."""
     alike: tuple[str, ...] = ()
-    """The warnings about subjects that may be one person, which come first."""
+    """The warnings about names of subjects or levels that may be one, which come first."""
     warnings: list[str] = field(default_factory=list)
 
 
@@ -107,11 +105,12 @@ def carry_out(order: AnalyseOrder) -> Analysis:
         orders=orders,
     )
     complete = cells.complete()
-    _check_usable(order, cells, complete)
+    mistyped = [text for factor in cells.factors for text in mistyped_levels(factor, read)]
+    _check_usable(order, cells, complete, mistyped)
     left_out = read.left_out | ({f"no {order.measure}": cells.n_empty} if cells.n_empty else {})
-    alike = _alike(cells.subjects, order.subject)
+    alike = alike_subjects(cells.subjects, order.subject) + mistyped
     warnings = alike + _warnings(cells, complete, read)
-    warnings += _codes(order.measure, read)
+    warnings += missing_codes(order.measure, read)
     warnings += [
         f"{count} rows have {reason} and were left out"
         for reason, count in read.left_out.items()
@@ -169,32 +168,22 @@ def missing_cells(cells: Cells, subject: str) -> str:
     return "; ".join(lacking[:_SHOWN]) + more
 
 
-def _check_usable(order: AnalyseOrder, cells: Cells, complete: Complete) -> None:
+def _check_usable(
+    order: AnalyseOrder, cells: Cells, complete: Complete, mistyped: Sequence[str]
+) -> None:
     if len(complete.subjects) < 2:
         lacking = complete.left_out[0]
         raise TooFewData(
             f"Only {len(complete.subjects)} of {len(cells.subjects)} subjects have a value of"
             f" {order.measure!r} in every cell; two at least are needed. {order.subject}"
             f" {lacking!r}, for example, lacks {missing_cells(cells, lacking)}."
+            + "".join(f" {text}." for text in mistyped)
         )
     if float(np.ptp(complete.values)) <= 0.0:
         raise ConstantData(
             f"Column {order.measure!r} is {complete.values.flat[0]:g} in every cell of every"
             " complete subject; there is nothing to test."
         )
-
-
-def _alike(subjects: Sequence[str], column: str) -> list[str]:
-    """Ask about subjects whose names differ only in capitals, and may be one person."""
-    spelt: dict[str, list[str]] = {}
-    for name in subjects:
-        spelt.setdefault(name.casefold(), []).append(name)
-    return [
-        f"{column} {' and '.join(names)} differ only in capitals: one person? They were analysed as"
-        f" {len(names)}; if they are one, spell them alike"
-        for names in spelt.values()
-        if len(names) > 1
-    ]
 
 
 def _warnings(cells: Cells, complete: Complete, read: TidyInput) -> list[str]:
@@ -214,28 +203,6 @@ def _warnings(cells: Cells, complete: Complete, read: TidyInput) -> list[str]:
             f"{read.replicates} rows duplicate an earlier one; they count as replicates"
         )
     return warnings
-
-
-def _codes(measure: str, read: TidyInput) -> list[str]:
-    """Name values such as -99 that are usual codes for a missing value and far from all others."""
-    numbers = [as_number(text) for text in read.measure]
-    others = [one for one in numbers if one is not None and one not in MISSING_CODES]
-    if not others:
-        return []
-    low, high = min(others), max(others)
-    found = []
-    for code in sorted(MISSING_CODES & {one for one in numbers if one is not None}):
-        if max(low - code, code - high) <= high - low:
-            continue
-        lines = [line for line, one in zip(read.lines, numbers, strict=True) if one == code]
-        shown = ", ".join(str(line) for line in lines[:_SHOWN])
-        more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
-        found.append(
-            f"{measure} is {code:g} in line {shown}{more}, far from all other values ({low:g} to"
-            f" {high:g}); it was used as a number. If it stands for a missing value, leave the"
-            " cell empty"
-        )
-    return found
 
 
 def _means(cells: Cells, rng: np.random.Generator) -> list[CellMean]:

@@ -1,0 +1,104 @@
+"""Doubt what looks like a slip in a table for `reembody analyse`: names, levels, codes.
+
+Nothing is corrected, since only the person who wrote the table knows: each doubt is a sentence with
+the line, what was done, and what to do.
+"""
+
+import re
+from collections.abc import Sequence
+from difflib import get_close_matches
+from statistics import median
+
+from app.cli.analyse.inputs import TidyInput
+from app.science.statistics import as_number, ordered_levels, place_of
+
+MISSING_CODES = frozenset({-9999.0, -999.0, -99.0, -9.0, 99.0, 999.0, 9999.0})
+"""Numbers that questionnaires and statistics programs often store for a missing value."""
+_SHOWN = 8
+_RARE, _USUAL = 0.1, 0.5
+"""Share of the subjects who have a level at most, and other levels at least, for it to be doubted.
+
+One subject is always few."""
+_FEWEST_SUBJECTS = 3
+
+
+def alike_subjects(subjects: Sequence[str], column: str) -> list[str]:
+    """Ask about subjects whose names differ only in capitals, and may be one person."""
+    spelt: dict[str, list[str]] = {}
+    for name in subjects:
+        spelt.setdefault(name.casefold(), []).append(name)
+    return [
+        f"{column} {' and '.join(names)} differ only in capitals: one person? They were analysed as"
+        f" {len(names)}; if they are one, spell them alike"
+        for names in spelt.values()
+        if len(names) > 1
+    ]
+
+
+def mistyped_levels(factor: str, read: TidyInput) -> list[str]:
+    """Ask about levels that hardly anybody has, or that are spelt almost as another one.
+
+    One row with 1255 instead of 125 makes a level of its own, which all other subjects lack.
+    """
+    column = read.within[factor]
+    levels = ordered_levels(column)
+    places = {text: place_of(levels, text) for text in set(column)}
+    having: list[dict[str, int]] = [{} for _ in levels]
+    """For each level, the subjects who have it, and the line where each first has."""
+    for subject, text, line in zip(read.subjects, column, read.lines, strict=True):
+        having[places[text]].setdefault(subject, line)
+    return _rare(factor, levels, having) + _spelt_alike(factor, levels)
+
+
+def _rare(factor: str, levels: Sequence[str], having: Sequence[dict[str, int]]) -> list[str]:
+    people = len({subject for own in having for subject in own})
+    usual = median(len(own) for own in having)
+    if people < _FEWEST_SUBJECTS or usual < _USUAL * people:
+        return []
+    found = []
+    for level, own in zip(levels, having, strict=True):
+        if len(own) > max(1.0, _RARE * people):
+            continue
+        lines = ", ".join(f"{line} ({who})" for who, line in list(own.items())[:_SHOWN])
+        others = [one for one in levels if one != level]
+        close = get_close_matches(level, others, n=1)
+        found.append(
+            f"{factor} {level!r} is only in line {lines}, the others ({', '.join(others)}) are of"
+            f" most subjects: {f'was {close[0]!r} meant' if close else 'was it mistyped'}? It was"
+            " taken as a level of its own; if it is not one, correct the file"
+        )
+    return found
+
+
+def _spelt_alike(factor: str, levels: Sequence[str]) -> list[str]:
+    spelt: dict[str, list[str]] = {}
+    for level in levels:
+        spelt.setdefault(re.sub(r"[\s_-]+", "", level.casefold()), []).append(level)
+    return [
+        f"{factor} {' and '.join(map(repr, names))} differ only in capitals, spaces or dashes: one"
+        f" level? They were analysed as {len(names)}; if they are one, spell them alike"
+        for names in spelt.values()
+        if len(names) > 1 and any(as_number(name) is None for name in names)
+    ]
+
+
+def missing_codes(measure: str, read: TidyInput) -> list[str]:
+    """Name values such as -99 that are usual codes for a missing value and far from all others."""
+    numbers = [as_number(text) for text in read.measure]
+    others = [one for one in numbers if one is not None and one not in MISSING_CODES]
+    if not others:
+        return []
+    low, high = min(others), max(others)
+    found = []
+    for code in sorted(MISSING_CODES & {one for one in numbers if one is not None}):
+        if max(low - code, code - high) <= high - low:
+            continue
+        lines = [line for line, one in zip(read.lines, numbers, strict=True) if one == code]
+        shown = ", ".join(str(line) for line in lines[:_SHOWN])
+        more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
+        found.append(
+            f"{measure} is {code:g} in line {shown}{more}, far from all other values ({low:g} to"
+            f" {high:g}); it was used as a number. If it stands for a missing value, leave the"
+            " cell empty"
+        )
+    return found
