@@ -25,6 +25,7 @@ from app.science.instruments.scoring import FloatArray, scores_of_columns
 
 __all__ = ["Scored", "score_csv", "score_table", "scored_csv"]
 _NAMED_ROWS = 5
+_NAMED_PROBLEMS = 50
 _SEPARATORS = (",", ";", "\t")
 _MISSING = frozenset({"", "na", "n/a", "nan", "null", "none"})
 _YES_NO = {"true": True, "yes": True, "false": False, "no": False}
@@ -59,24 +60,12 @@ def scored_csv(instrument: Instrument, text_in: str) -> Scored:
     a float and are empty where they have no value. A table with only a header gives only a header.
 
     Raises InstrumentTableError, naming line and column, for: no header, no item column, duplicate
-    columns, a row of another length, broken quotes, an invalid answer.
+    columns, broken quotes; for all rows of another length and all invalid answers together.
     """
     separator, header, rows = _read(instrument, text_in.removeprefix("\ufeff"))
-    for row in rows:
-        if len(row.cells) != len(header):
-            raise InstrumentTableError(
-                f"Line {row.line} has {len(row.cells)} cells, but the header has {len(header)}. "
-                "Give every row one cell for each column, and put text with separators in quotes."
-            )
-    cells = [row.cells for row in rows]
-    if separator == ";":
-        # Where ; separates cells, spreadsheets write decimals with a comma.
-        cells = [_with_decimal_points(instrument, header, row) for row in cells]
-    frame = pd.DataFrame(cells, columns=header, dtype=object)
-    try:
-        table = score_table(instrument, frame)
-    except AnswerError as error:
-        raise _with_location(error, instrument, header, rows) from error
+    _check_rows(instrument, separator, header, rows)
+    cells = [_read_cells(instrument, separator, header, row) for row in rows]
+    table = score_table(instrument, pd.DataFrame(cells, columns=header, dtype=object))
     notes = _notes_on_empty_scores(instrument, header, rows, table)
     return Scored(_to_csv(table, [score.key for score in instrument.scores]), notes)
 
@@ -152,23 +141,56 @@ def _empty_table_error(instrument: Instrument) -> InstrumentTableError:
     )
 
 
-def _with_decimal_points(instrument: Instrument, header: list[str], cells: list[str]) -> list[str]:
+def _read_cells(instrument: Instrument, separator: str, header: list[str], row: _Row) -> list[str]:
+    """Return the cells; where ; separates them, spreadsheets write decimals with a comma."""
+    if separator != ";":
+        return row.cells
     return [
         cell.replace(",", ".") if _item_name(instrument, name) in instrument.by_key else cell
-        for name, cell in zip(header, cells, strict=True)
+        for name, cell in zip(header, row.cells, strict=True)
     ]
 
 
-def _with_location(
-    error: AnswerError, instrument: Instrument, header: list[str], rows: list[_Row]
-) -> InstrumentTableError:
-    number = error.row or 1
-    row = rows[number - 1]
-    at = next(n for n, name in enumerate(header) if _item_name(instrument, name) == error.item)
-    return InstrumentTableError(
-        f"Row {number} (line {row.line}), column {header[at].strip()}: the answer is "
-        f"{shortened(row.cells[at])!r}. Valid: {error.valid}, or an empty cell if it is missing. "
-        "Correct it and score again; nothing was written."
+def _check_rows(
+    instrument: Instrument, separator: str, header: list[str], rows: list[_Row]
+) -> None:
+    """Raise InstrumentTableError with everything that is wrong with any row, by line."""
+    items = [
+        (at, instrument.by_key[key])
+        for key, at in _item_columns(instrument, header).items()
+        if instrument.by_key[key].is_numeric
+    ]
+    wrong: list[str] = []
+    for number, row in enumerate(rows, start=1):
+        if len(row.cells) != len(header):
+            wrong.append(
+                f"Line {row.line} has {len(row.cells)} cells, but the header has {len(header)}. "
+                "Give every row one cell for each column, and put text with separators in quotes."
+            )
+            continue
+        cells = _read_cells(instrument, separator, header, row)
+        for at, item in items:
+            try:
+                as_number(instrument, item, _cell(cells[at]))
+            except AnswerError as error:
+                wrong.append(
+                    f"Row {number} (line {row.line}), column {header[at].strip()}: the answer is "
+                    f"{shortened(row.cells[at])!r}. Valid: {error.valid}, or an empty cell if it "
+                    "is missing."
+                )
+    if not wrong:
+        return
+    if len(wrong) == 1:
+        raise InstrumentTableError(f"{wrong[0]} Correct it and score again; nothing was written.")
+    more = [f"and {len(wrong) - _NAMED_PROBLEMS} more"] if len(wrong) > _NAMED_PROBLEMS else []
+    raise InstrumentTableError(
+        "\n  ".join(
+            [
+                f"{len(wrong)} mistakes; correct them and score again, nothing was written:",
+                *wrong[:_NAMED_PROBLEMS],
+                *more,
+            ]
+        )
     )
 
 

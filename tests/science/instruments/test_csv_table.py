@@ -95,6 +95,27 @@ def test_invalid_tables_are_rejected_with_line_and_column(text: str, expected_me
         score_csv(KARAS, text)
 
 
+def test_all_mistakes_of_a_table_are_listed_at_once() -> None:
+    """Several invalid answers and short rows are one error, by line; 50 are written out."""
+    text = "id;q1;q2\np1;8;3\np2;4\np3;4;many\np4;1,5;0\np5;3;3\n"
+    with pytest.raises(InstrumentTableError) as refused:
+        score_csv(KARAS, text)
+    said = str(refused.value).splitlines()
+    assert said[0].startswith("5 mistakes; correct them and score again, nothing was written")
+    places = (
+        "(line 2), column q1: the answer is '8'",
+        "Line 3 has 2 cells",
+        "(line 4), column q2: the answer is 'many'",
+        "(line 5), column q1: the answer is '1,5'",
+        "(line 5), column q2: the answer is '0'",
+    )
+    assert len(said) == 1 + len(places)
+    for line, place in zip(said[1:], places, strict=True):
+        assert place in line
+    with pytest.raises(InstrumentTableError, match=r"(?s)^60 mistakes.*and 10 more$"):
+        score_csv(KARAS, "id,q1\n" + "p,9\n" * 60)
+
+
 @given(st.text('idq1234567,;\t"\n\r .-8', max_size=60))
 def test_any_text_is_a_table_or_a_table_error(text: str) -> None:
     """Any text is read as a table or raises a table error, never another exception."""
