@@ -16,7 +16,13 @@ from app.science.anatomy.lengths import (
     sides_agree,
     stature_from,
 )
-from app.science.anatomy.notice import Notice, Rule, mirrored_notice, sentences
+from app.science.anatomy.notice import (
+    Notice,
+    Rule,
+    backward_foot_notice,
+    mirrored_notice,
+    sentences,
+)
 from app.science.anatomy.uprightness import (
     tilts_deg,
     turned_over_bodies,
@@ -31,6 +37,7 @@ __all__ = [
     "Handedness",
     "Notice",
     "Rule",
+    "backward_foot_notice",
     "handedness_of",
     "length_notices",
     "mirrored_bodies",

@@ -43,6 +43,23 @@ def sentences(notices: Iterable[Notice]) -> tuple[str, ...]:
     return tuple(notice.sentence for notice in notices)
 
 
+def backward_foot_notice(side: str, turned: str) -> Notice:
+    """Return the refusal of a body of which one foot points backwards.
+
+    Args:
+        side: left or right.
+        turned: the angle between that foot and the body's front, with its unit.
+    """
+    return Notice(
+        "mirrored",
+        "refused",
+        f"The {side} foot points backwards, the other one forwards.",
+        f"its toes point {turned} away from the body's front",
+        "less than 90 degrees",
+        f"Exchange the labels of heel and toes of the {side} foot.",
+    )
+
+
 def mirrored_notice(value: str, valid: str) -> Notice:
     """Return the notice on a capture whose left and right were mirrored back."""
     return Notice(

@@ -18,7 +18,7 @@ Before all that, markers have to move like a body: those of one segment keep the
 
 import numpy as np
 
-from app.science.anatomy import Notice, Rule, mirrored_notice
+from app.science.anatomy import Notice, Rule, backward_foot_notice, mirrored_notice
 from app.science.fitting.landmarks import Landmarks
 from app.science.rotations import FloatArray
 
@@ -95,12 +95,7 @@ def label_notice(marks: Landmarks) -> Notice | None:
     backwards = [side for side, cosine in feet.items() if cosine < 0.0]
     if len(backwards) == 1 and tilt >= 0.0:
         (side,) = backwards
-        return _refused(
-            f"The {side} foot points backwards, the other one forwards.",
-            f"its toes point {_degrees(feet[side])} away from the body's front",
-            "less than 90 degrees",
-            f"Exchange the labels of heel and toes of the {side} foot.",
-        )
+        return backward_foot_notice(side, _degrees(feet[side]))
     if tilt >= 0.0 and toes >= 0.0:
         return None
     if tilt < 0.0 and toes < 0.0:

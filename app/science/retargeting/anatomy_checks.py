@@ -4,13 +4,16 @@ Skeletons of files are transferred by their joints' rotations, so their lengths 
 scale: what does not fit is noted. Up and down, left and right do matter: a skeleton upside down is
 turned over, since its feet would hang from the ceiling. A mirrored one faces backwards, and its
 feet would swing from the wrong side of the ankle (step heights of 2.5 to 3.6 times the source's
-were seen). It is mirrored back.
+were seen). It is mirrored back. One foot that points backwards cannot be mended without guessing.
 """
+
+import numpy as np
 
 from app.science.anatomy import (
     PUBLISHED,
     Handedness,
     Notice,
+    backward_foot_notice,
     handedness_of,
     length_notices,
     mirrored_notice,
@@ -21,7 +24,7 @@ from app.science.anatomy import (
     upright_notice,
 )
 from app.science.retargeting.joint_map import JointMap
-from app.science.retargeting.legs import has_ball, has_legs
+from app.science.retargeting.legs import has_ball, has_legs, legs_of
 from app.science.rig import RigMotion
 from app.science.rotations import FloatArray
 
@@ -32,6 +35,8 @@ _SMALLEST_WALKER_M = 0.85
 """Smaller people hardly walk; the same limit as for the guess of a file's unit."""
 _ADULT_M = (1.4, 2.1)
 _CM_PER_INCH = 2.54
+_CLEARLY = 0.2
+"""Cosine between foot and front from which a foot clearly points forwards, or backwards."""
 _SIDES_RATIO = 1.7
 """Ratio of both sides' mean step heights from which they are noted; captured walks had 1.3."""
 _HIGHEST_STEP_M = 0.4
@@ -82,6 +87,34 @@ def sides_notice(motion: RigMotion, joint_map: JointMap) -> Notice | None:
         "Exchange left and right in the map. If the map is right, the file has left-handed axes:"
         " export it with right-handed ones.",
     )
+
+
+def foot_notice(motion: RigMotion, joint_map: JointMap) -> Notice | None:
+    """Return a refusal if one foot of a body points backwards: its heel and toes are exchanged.
+
+    The body's front is up x right, as for `handedness_of`. Feet without a ball are no evidence.
+    """
+    if not has_legs(joint_map) or not has_ball(motion.rig, joint_map):
+        return None
+    legs = legs_of(motion.rig, joint_map)
+    positions, world = motion.world()
+    hips = positions[:, [leg.thigh for leg in legs.both]]
+    knees = positions[:, [leg.shin for leg in legs.both]]
+    front = np.cross((hips - knees).mean(axis=1), hips[:, 1] - hips[:, 0])
+    forwards = {
+        leg.side: _median_cosine(leg.ball_m(positions, world) - positions[:, leg.foot], front)
+        for leg in legs.both
+    }
+    side = min(forwards, key=lambda one: forwards[one])
+    if not forwards[side] < -_CLEARLY < _CLEARLY < max(forwards.values()):
+        return None
+    return backward_foot_notice(side, f"{np.degrees(np.arccos(forwards[side])):.0f} degrees")
+
+
+def _median_cosine(vectors: FloatArray, others: FloatArray) -> float:
+    sizes = np.linalg.norm(vectors, axis=1) * np.linalg.norm(others, axis=1)
+    cosines = np.einsum("ni,ni->n", vectors, others) / np.maximum(sizes, 1e-9)
+    return float(np.clip(np.median(cosines), -1.0, 1.0))
 
 
 def _votes(motion: RigMotion, joint_map: JointMap) -> Handedness:

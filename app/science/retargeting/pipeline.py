@@ -13,6 +13,7 @@ import numpy as np
 
 from app.science.anatomy import Notice
 from app.science.retargeting.anatomy_checks import (
+    foot_notice,
     sides_notice,
     stature_notice,
     step_height_notice,
@@ -164,6 +165,7 @@ def retarget_motion(
     )
     notices = (
         sides_notice(source, source_map),
+        foot_notice(source, source_map),
         toes_notice(source, source_map),
         stature_notice(None if walks is None else walks.source.leg_length_m),
         _step_notice(walks, retargeter.scale),

@@ -11,11 +11,12 @@ from app.adapters.captures.reader import read_capture_file
 from app.science.anatomy import mirrored_skeleton, turned_over_skeleton
 from app.science.retargeting.anatomy_checks import (
     checked_skeleton,
+    foot_notice,
     stature_notice,
     step_height_notice,
     uneven_steps_notice,
 )
-from app.science.retargeting.joint_map import propose_joint_map
+from app.science.retargeting.joint_map import JointMap, propose_joint_map
 from app.science.retargeting.pipeline import Retargeted, retarget_motion
 from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, reference_avatar
 from app.science.rig import Rig, RigMotion
@@ -219,6 +220,44 @@ def test_steps_of_very_different_height_on_both_sides_are_noted() -> None:
     for left_m, right_m in ((0.0818, 0.1037), (0.906, 0.355), (0.019, 0.005)):
         assert uneven_steps_notice(left_m, right_m) is None
     assert uneven_steps_notice(None, 0.1) is None
+
+
+def with_foot_turned(motion: RigMotion, joint_map: JointMap, side: str) -> RigMotion:
+    """Return the movement of a skeleton of which one foot's toes are where its heel is."""
+    foot = motion.rig.index(joint_map[f"{side}Foot"])
+    offsets = motion.rig.offsets_m.copy()
+    for joint, parent in enumerate(motion.rig.parents):
+        if parent == foot:
+            offsets[joint] *= (-1.0, 1.0, -1.0)
+    ends = tuple(
+        (joint, (-x, y, -z) if joint == foot else (x, y, z)) for joint, (x, y, z) in motion.rig.ends
+    )
+    return replace(motion, rig=replace(motion.rig, offsets_m=offsets, ends=ends))
+
+
+@pytest.mark.parametrize("name", ["cmu_asfamc/02_01.amc", "cmu_bvh/12_02.bvh"])
+@pytest.mark.parametrize("side", ["Left", "Right"])
+def test_one_foot_of_a_skeleton_that_points_backwards_is_refused(
+    shared_data: Path, name: str, side: str
+) -> None:
+    """A skeleton's foot with heel and toes exchanged is refused, in the words used for markers."""
+    motion = _read(shared_data, name)
+    turned = with_foot_turned(motion, propose_joint_map(motion.rig).joint_map, side)
+    notice = _onto(turned).notices[0]
+    assert (notice.rule, notice.action) == ("mirrored", "refused")
+    assert f"The {side.lower()} foot points backwards, the other one forwards." in notice.sentence
+    assert f"Exchange the labels of heel and toes of the {side.lower()} foot." in notice.sentence
+
+
+def test_feet_are_judged_only_against_each_other() -> None:
+    """Feet that both point forwards or both backwards, or that have no toes, are not judged."""
+    walk = made_walk(own_body(1.75)).motion
+    assert foot_notice(walk, SAME) is None
+    left = with_foot_turned(walk, SAME, "Left")
+    assert foot_notice(left, SAME) is not None
+    assert foot_notice(with_foot_turned(left, SAME, "Right"), SAME) is None
+    toeless = {part: name for part, name in SAME.items() if "Toes" not in part}
+    assert foot_notice(without_toes(left), toeless) is None
 
 
 def test_a_body_smaller_by_the_ratio_of_inch_and_centimetre_is_noted() -> None:
