@@ -232,13 +232,18 @@ def test_a_fit_names_how_each_walk_was_used(tmp_path: Path) -> None:
     table.write_text("\n".join(["subject,frame,x,y", *rows]) + "\n")
     assert "frame rate" in _refusal("fit", table, "--out", model)
     assert "m, cm, mm are valid" in _refusal("fit", table, "--unit", "inch", "--out", model)
+    with table.open("a") as more:
+        more.writelines(f"D,{at},{100 + at % 2},200\n" for at in range(150))
     figures = _figures("fit", table, "--rate-hz", 60, "--unit", "cm", "--out", model, *QUICK)
     straight, curved = figures["fitted"]
     assert (straight["own_path"], curved["own_path"]) == (False, True)
     assert curved["walk"] == "walks.csv, B, walk 1"
     assert curved["walked_m"] == pytest.approx(3.0, rel=0.02)
     assert curved["turning_rad"] == pytest.approx(3.0, rel=0.15)
-    (left_out,) = figures["left_out"]
+    standing, left_out = figures["left_out"]
+    assert standing["walk"] == "walks.csv, D"
+    assert standing["reason"].startswith("stood still, within 0.01 m for up to 2.48 s; a walk ends")
+    assert "check the units" in standing["reason"]
     assert left_out["walk"] == "walks.csv, C, round 1"
     assert "ends within 0.25 m of its start" in left_out["reason"]
 
@@ -259,7 +264,10 @@ def test_invalid_walks_are_refused(lab: Path) -> None:
     bad.write_text("subject,time_s,x_m,y_m\n7,0,0,0\n7,0.1,nan,0\n7,0.2,0,1\n")
     assert "line 3" in _fit(lab, bad)
     bad.write_text("subject,time_s,x_m,y_m\n7,0,0,0\n7,0.1,0,0\n7,0.2,0,0.01\n")
-    assert "contains no walk" in _fit(lab, bad)
+    told = _fit(lab, bad)
+    assert "contains no walk" in told
+    assert "people stood still, within 0.01 m for up to 0.2 s" in told
+    assert "check the units" in told
     assert "one subject, '0'" in _fit(lab, *sorted(lab.glob("walker-0-*.csv")))
     assert "gone.csv" in _fit(lab, lab / "gone.csv")
 
@@ -280,6 +288,10 @@ def test_invalid_requests_for_samples_are_refused(lab: Path) -> None:
     assert "one of --length" in _refusal("sample", model)
     assert "stature" in _refusal("sample", model, "--length", 2)
     assert "metres" in _refusal("sample", model, "--length", 2, "--stature", 175)
+    for asked in (("--length", 1e6), ("--length", 0), ("--path", "0,0 0,900 900,900")):
+        told = _refusal("sample", model, *asked, "--stature", 1.75)
+        assert "more than 0 and at most 1000 m are valid" in told
+        assert "in parts" in told
     assert "not a walking model" in _refusal("sample", lab / "people.csv", "--length", 2)
     content = bytearray(model.read_bytes())
     content[len(content) // 2] ^= 0xFF

@@ -3,11 +3,9 @@
 import csv
 import io
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-
-import numpy as np
 
 from app.adapters.captures import CaptureError, read_capture_file
 from app.adapters.walks import load_scene, load_shipped, shipped_scenes
@@ -22,6 +20,7 @@ from app.science.walking.recording import (
     Walker,
     doubts_about,
     entry_of,
+    extent_of,
     rounds_of,
     track_of_motion,
     walks_of,
@@ -159,6 +158,7 @@ def read_entries(
         rounds = [walk for track in tracks for walk in rounds_of(track)]
         if not walks and not rounds:
             raise ValueError(f"{path}: {_no_walk(tracks)}")
+        found.left_out.extend(_standing(tracks, {walk.subject for walk in (*walks, *rounds)}))
         doubts = doubts_about(walks)
         found.notices.extend(f"{path.name}: {text}" for text in (*table.assumed, *doubts))
         if doubts:
@@ -199,14 +199,28 @@ def read_entries(
     return found
 
 
+_WALK = "a walk ends 0.25 m or farther from its start and is faster than 0.1 m/s"
+_IF_NOT_SO = "if that is not so, check the units of x, y and time, and the rate"
+
+
 def _no_walk(tracks: Sequence[Track]) -> str:
-    widest_m = max(float(np.ptp(track.xy_m, axis=0).max()) for track in tracks)
-    longest_s = max(float(track.times_s[-1] - track.times_s[0]) for track in tracks)
     return (
-        "it contains no walk; a walk ends 0.25 m or farther from its start and is faster than 0.1"
-        f" m/s. As it was read, people stay within {widest_m:.3g} m for up to {longest_s:.3g} s: if"
-        " that is not so, check the units of x, y and time, and the rate."
+        f"it contains no walk; {_WALK}. As it was read, people stood still, {extent_of(tracks)}:"
+        f" {_IF_NOT_SO}. If it is so, leave the file out."
     )
+
+
+def _standing(tracks: Sequence[Track], moving: set[str]) -> Iterator[tuple[str, str]]:
+    """Return name and reason of each person of a file who goes nowhere in it."""
+    standing: dict[str, list[Track]] = {}
+    for track in tracks:
+        if track.subject not in moving:
+            standing.setdefault(track.subject, []).append(track)
+    for subject, own in standing.items():
+        yield (
+            f"{own[0].source}, {subject}",
+            f"stood still, {extent_of(own)}; {_WALK}: {_IF_NOT_SO}",
+        )
 
 
 def _require_known_people(people: People, found: Entries) -> None:

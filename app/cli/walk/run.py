@@ -51,6 +51,9 @@ READINGS: dict[str, SuitabilityOptions | None] = {
 }
 MODELS = ("mixed", "prob", "adapt", "stat")
 
+MOST_METRES = 1000.0
+"""Longest path that is predicted: every draw walks all of it."""
+
 
 @dataclass(frozen=True)
 class WalksOrder:
@@ -238,14 +241,25 @@ def _path_of(order: SampleOrder) -> PlannedPath:
     if sum(ways) != 1:
         raise ValueError("give one of --length, --path and --scene with --from and --to")
     if order.length_m is not None:
+        _check_length(order.length_m, f"--length {order.length_m:g}")
         return straight_path(order.length_m)
     if order.points is not None:
-        return PlannedPath(np.array([_point(text, "--path") for text in order.points.split()]))
+        path = PlannedPath(np.array([_point(text, "--path") for text in order.points.split()]))
+        _check_length(path.length_m, f"--path of {path.length_m:g} m")
+        return path
     scene = read_scene(order.scene)
     if scene is None or order.start is None or order.goal is None:
         raise ValueError("--scene needs --from and --to: a place of the scene, or x,y in metres")
     start, goal = (_place(scene, order.start, "--from"), _place(scene, order.goal, "--to"))
     return LazyThetaPlanner(scene).plan(start, goal)
+
+
+def _check_length(length_m: float, asked: str) -> None:
+    if not 0.0 < length_m <= MOST_METRES:
+        raise ValueError(
+            f"{asked}: more than 0 and at most {MOST_METRES:g} m are valid. Give metres, and ask"
+            " for a longer way in parts: no walk that a model learns from is nearly as long"
+        )
 
 
 def _place(scene: Scene, text: str, option: str) -> Point:

@@ -30,6 +30,7 @@ from app.science.walking.recording import (
     TrackingOptions,
     Walker,
     entry_of,
+    extent_of,
     track_of_motion,
     walks_of,
 )
@@ -106,7 +107,8 @@ def walks_in(tracks: Sequence[Track]) -> list[Walk]:
     walks = [walk for track in tracks for walk in walks_of(track)]
     if not walks:
         raise Cannot(
-            f"there are no walks in {len(tracks)} track(s)",
+            f"there are no walks in {len(tracks)} track(s): people stood still,"
+            f" {extent_of(tracks)}",
             "A walk must go at least 0.25 m from where it begins, faster than 0.1 m/s: check the "
             "unit of x and y, and the rate.",
         )

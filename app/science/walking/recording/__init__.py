@@ -2,13 +2,13 @@
 
 `track_of_motion` extracts a person's track on the floor from a capture, `walks_of` cuts a track
 into walks, and `entry_of` finds the path of each; `planned_walk` always takes the planned one.
-`census` counts path lengths, and `doubts_about` names what
-suggests another unit.
+`census` counts path lengths, `doubts_about` names what suggests another unit, and `extent_of` in
+what somebody stood still.
 """
 
 from app.science.walking.recording.capture_tracks import TrackingOptions, track_of_motion
 from app.science.walking.recording.census import census
-from app.science.walking.recording.plausibility import doubts_about
+from app.science.walking.recording.plausibility import doubts_about, extent_of
 from app.science.walking.recording.segmentation import rounds_of, walks_of
 from app.science.walking.recording.tracks import Walker
 from app.science.walking.recording.walks import (
@@ -28,6 +28,7 @@ __all__ = [
     "dependencies_of",
     "doubts_about",
     "entry_of",
+    "extent_of",
     "planned_walk",
     "rounds_of",
     "track_of_motion",

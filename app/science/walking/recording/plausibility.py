@@ -16,7 +16,7 @@ import numpy as np
 
 from app.science.rotations import FloatArray
 from app.science.walking.recording.segmentation import smoothed
-from app.science.walking.records import Walk
+from app.science.walking.records import Track, Walk
 
 USUAL_M_S, STARTING_S = 1.35, 0.9
 """Speed of usual walks, and the time that starting and stopping add to a walk."""
@@ -56,6 +56,17 @@ def doubts_about(walks: Sequence[Walk]) -> list[str]:
             " to .9 m"
         )
     return found
+
+
+def extent_of(tracks: Sequence[Track]) -> str:
+    """Say how far tracks without a walk reach, and how long: what somebody stood still in.
+
+    Args:
+        tracks: one or more tracks; their widest extent along an axis, and their longest time.
+    """
+    widest_m = max(float(np.ptp(track.xy_m, axis=0).max()) for track in tracks)
+    longest_s = max(float(track.times_s[-1] - track.times_s[0]) for track in tracks)
+    return f"within {widest_m:.3g} m for up to {longest_s:.3g} s"
 
 
 def step_length_m(walk: Walk) -> float | None:

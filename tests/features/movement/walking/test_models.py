@@ -151,7 +151,10 @@ def test_assumed_units_of_a_table_are_shown_and_doubted(walking_lab: Lab) -> Non
     [
         (table(bad_line=9), "line 9"),
         (b"id,time_s,x_m,y_m\nA,0,0,0\n", "at least two"),
-        (b"id,time_s,x_m,y_m\nA,0,0,0\nA,1,0,0\n", "there are no walks"),
+        (
+            b"id,time_s,x_m,y_m\nA,0,0,0\nA,1,0,0\n",
+            "there are no walks in 1 track(s): people stood still, within 0 m",
+        ),
         (b"id,time_s,y_m\nA,0,0\n", "no column x"),
     ],
 )
