@@ -27,12 +27,12 @@ in turn, every model learns from the others (`./run bench walking_evaluation --o
 and intervals come from drawing whole people again, because walks of one person are not independent.
 
 *On no set of real walkers does the paper's model predict better than a line through distance by
-more than the interval, and on two it predicts worse.* Those two are the ten-subject table and
-single file; in the corridor P_prob errs more and on the captures less, but either interval contains
-0. On the table and in the corridor its intervals contain too few walks. So predictions are no
-longer made with it but with **P_mixed**: the time of an agent that speeds up, walks and brakes,
-whose pace and ramp time differ between people, and a spread of single walks on top (`travel_times`
-in `app/science/walking`; [how](walking.md#how-it-works)). The baselines here have the same effects
+more than the interval, and in single file it predicts worse.* On the ten-subject table it does as
+well as the line; in the corridor P_prob errs more and on the captures less, but either interval
+contains 0. In the corridor its intervals contain too few walks. So predictions are made with
+**P_mixed** instead: the time of an agent that speeds up, walks and brakes, whose pace and ramp time
+differ between people, and a spread of single walks on top (`travel_times` in `app/science/walking`;
+[how](walking.md#how-it-works)). The baselines here have the same effects
 of people and the same spread, so they differ from P_mixed in the curve alone: constant speed, a
 line through distance, a line through its logarithm. P_mixed is not worse than the best of them by
 more than the interval on any set of six or more people, and better by more than it in single file
@@ -52,12 +52,15 @@ ahead on the captures. The form of the spread and of the priors was chosen while
 tables and at the captures; the share of the agent's time on short walks was added after a first run
 on all five, because synthetic walkers of half a metre to two needed it.
 
-A second run on another machine gave the same figures of P_mixed, the baselines and P_stat to the
-last digit, but not of P_prob and P_adapt on two sets: P_prob had 0.350 s (0.279 to 0.432) with 40
-and 79 % inside on the ten-subject table, and 0.485 s with 42 and 83 % on the captures. Why is not
-known. P_mixed has the lower CRPS on the table in both runs. Both runs were before slightly curved
-walks got their own path, as one of the 61 in the corridor does since (14.16 m that turn by 146
-degrees instead of 13.85 m straight); no walk of the other sets changed.
+Earlier figures of P_prob and P_adapt depended on the machine: on the ten-subject table P_prob had
+0.396 s on one and 0.350 s on another. Ten people walk the same ten distances there, so 80 walks are
+equally near to whatever a blend aims at, and those blended were the ones that NumPy's partial sort
+happened to put first: a few people's, again and again. (The first by number would give 0.415 s.)
+Now they are drawn by lot from all of them,
+and blends of one course are exactly where its walks are: 0.307 s for P_prob instead of 0.396, and
+0.430 for P_adapt instead of 0.650. On the captures they changed by 0.002 s. In the corridor all
+figures changed a little, because one walk of the 61 got its own path meanwhile (14.16 m that turn
+by 146 degrees instead of 13.85 m straight).
 """
 
 FEW_PEOPLE = """
