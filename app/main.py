@@ -23,6 +23,7 @@ from app.features.movement.avatar import add_shipped_avatar
 from app.features.movement.captures import CaptureQueue
 from app.features.movement.humanoids import add_shipped_bodies
 from app.features.movement.live import LiveTracking
+from app.features.movement.performers import Performers
 from app.features.movement.tuning import TuningDesk, TuningQueue
 from app.features.movement.walking import FitQueue, PredictionQueue
 from app.features.people.accounts import RefusedSignIns, ensure_admin
@@ -60,6 +61,7 @@ PARTS: tuple[PartMaker, ...] = (
     lambda context: TuningDesk().watched_by(context.background, "tuning-curves"),
     TuningQueue.of,
     LiveTracking,
+    Performers,
     LabTrackers,
     ExportQueue.of,
     StorageMeter.of,

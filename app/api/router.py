@@ -20,6 +20,7 @@ from app.features.movement.captures.avatar_endpoints import router as on_avatars
 from app.features.movement.captures.endpoints import router as captures
 from app.features.movement.humanoids.endpoints import router as humanoids
 from app.features.movement.live.endpoints import router as trackers
+from app.features.movement.performers.endpoints import router as performers
 from app.features.movement.tuning.endpoints import router as tunings
 from app.features.movement.walking.endpoints import router as walks
 from app.features.movement.walking.models.endpoints import router as walking_models
@@ -136,7 +137,7 @@ def _routes() -> tuple[BaseRoute, ...]:
             imports,
             preregistrations,
         ),
-        *(walks, walking_models, tunings, trackers),
+        *(walks, walking_models, tunings, trackers, performers),
     )
     own = APIRouter()
     # The one route that names the model, so that the interface's description has its schema.

@@ -124,6 +124,13 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/trackers": LAB,
     "PUT /api/trackers/doors/{door}": DESIGNERS,
     "PUT /api/trackers/limbs": RUNNERS,
+    # Skeletons that they send, watched on a body and recorded as captures.
+    "GET /api/trackers/performers": LAB,
+    "POST /api/trackers/performers/pose": RUNNERS,
+    "WEBSOCKET /api/trackers/performers/watch": LAB,
+    "POST /api/trackers/recordings": DESIGNERS,
+    "POST /api/trackers/recordings/{recording_id}/capture": DESIGNERS,
+    "DELETE /api/trackers/recordings/{recording_id}": DESIGNERS,
     "GET /api/sessions/{session_id}/trackers": LAB,
     "PUT /api/sessions/{session_id}/trackers": RUNNERS,
     # Walking: scenes, walks, and the models that are fitted to them.

@@ -10,6 +10,7 @@ NOT_OVER_HTTP = {
     "WEBSOCKET /api/vr/trackers",
     "WEBSOCKET /api/vr/self-tests/storage",
     "WEBSOCKET /api/sessions/{session_id}/pose",
+    "WEBSOCKET /api/trackers/performers/watch",
 }
 
 
@@ -47,7 +48,10 @@ def test_analysts_cannot_change_anything() -> None:
         "POST /api/walking/models/{model_id}/prediction",
         "POST /api/walking/models/{model_id}/slice",
     }
-    watching = {"WEBSOCKET /api/sessions/{session_id}/pose"}
+    watching = {
+        "WEBSOCKET /api/sessions/{session_id}/pose",
+        "WEBSOCKET /api/trackers/performers/watch",
+    }
     # A file for their own download, which the server creates and deletes.
     taking = {"POST /api/studies/{key}/exports", "DELETE /api/exports/{export_id}"}
     changing = (

@@ -5,11 +5,11 @@ wearer looks around, from making a datagram to reading its message. Which datagr
 shows in the distance between two trackers, which no alignment changes. The relay is a process of
 its own that passes each datagram on to a WebSocket and does nothing else; it gets the same
 datagrams. Then every pose that the door took has to be on disk.
+
+`live`: a skeleton onto a body, to a page; see `hub_live`.
 """
 
-import asyncio
 import json
-import multiprocessing
 import tempfile
 import threading
 import time
@@ -20,12 +20,14 @@ from typing import Any
 
 import numpy as np
 from sqlalchemy import func, select
-from websockets.asyncio.server import serve
 from websockets.sync.client import connect
 
 from app.database import open_database
 from app.models import TrackerChunk
 from app.science.rotations import identity
+from tests.benchmarks.hub_live import DURATION_S as LIVE_S
+from tests.benchmarks.hub_live import live_figures
+from tests.benchmarks.relay import connected, relay
 from tests.benchmarks.report import CannotMeasure, Figure, Report
 from tests.features.lab import ok
 from tests.features.record.headset.site import HELLO, SUBPROTOCOL, Site, open_site
@@ -39,9 +41,9 @@ from tests.science.alignment.rooms import (
     some_room,
 )
 from tests.support.datagrams import HERE, free_udp_port, sender
-from tests.support.server import LiveServer, free_port
+from tests.support.server import LiveServer
 
-PARTS = ("headset",)
+PARTS = ("headset", "live")
 RATE_HZ = 90.0
 LIMBS = ("Hips", "LeftHand", "RightHand", "LeftLowerLeg", "RightLowerLeg")
 DURATION_S = 30.0
@@ -98,12 +100,14 @@ class Lab:
         ]
 
 
-def measure(parts: frozenset[str], duration_s: float = DURATION_S) -> Report:
+def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
     """Measure the named parts."""
     report = Report("hub")
     with tempfile.TemporaryDirectory(prefix="reembody-hub-") as folder:
         if "headset" in parts:
-            report.add(*_to_headset(Path(folder), duration_s))
+            report.add(*_to_headset(Path(folder) / "headset", duration_s or DURATION_S))
+        if "live" in parts:
+            report.add(*live_figures(Path(folder) / "live", duration_s or LIVE_S))
     return report
 
 
@@ -111,7 +115,7 @@ def _to_headset(folder: Path, duration_s: float) -> list[Figure]:
     lab = Lab(duration_s + ALIGNS_WITHIN_S + 5.0)
     port, relay_port = free_udp_port(), free_udp_port()
     with (
-        _relay(relay_port) as relay_url,
+        relay(relay_port) as relay_url,
         _relayed(relay_url) as relayed,
         LiveServer(folder) as server,
         open_site(server) as site,
@@ -264,50 +268,11 @@ def _stored(server: LiveServer, session_id: str) -> int:
 
 
 @contextmanager
-def _relay(udp_port: int) -> Iterator[str]:
-    """Run the bare relay in a process of its own; yield the address of its WebSocket."""
-    port = free_port()
-    process = multiprocessing.get_context("spawn").Process(
-        target=_run_relay, args=(udp_port, port), daemon=True
-    )
-    process.start()
-    try:
-        yield f"ws://127.0.0.1:{port}"
-    finally:
-        process.terminate()
-        process.join()
-
-
-def _run_relay(udp_port: int, port: int) -> None:
-    asyncio.run(_relaying(udp_port, port))
-
-
-async def _relaying(udp_port: int, port: int) -> None:
-    queues: set[asyncio.Queue[bytes]] = set()
-
-    class Incoming(asyncio.DatagramProtocol):
-        def datagram_received(self, data: bytes, _addr: object) -> None:
-            for queue in queues:
-                queue.put_nowait(data)
-
-    async def serve_one(viewer: Any) -> None:
-        queue: asyncio.Queue[bytes] = asyncio.Queue()
-        queues.add(queue)
-        while True:
-            await viewer.send((await queue.get()).decode())
-
-    loop = asyncio.get_running_loop()
-    await loop.create_datagram_endpoint(Incoming, local_addr=(HERE, udp_port))
-    async with serve(serve_one, HERE, port, compression=None):
-        await asyncio.Event().wait()
-
-
-@contextmanager
 def _relayed(url: str) -> Iterator[list[float]]:
     """Read the relay's messages while the block runs; yield how late each was."""
     latencies_s: list[float] = []
     over = threading.Event()
-    viewer = _connected(url)
+    viewer = connected(url)
 
     def read() -> None:
         with viewer:
@@ -325,15 +290,3 @@ def _relayed(url: str) -> Iterator[list[float]]:
     finally:
         over.set()
         thread.join()
-
-
-def _connected(url: str) -> Any:
-    """Connect to the relay as soon as it is there."""
-    deadline = time.monotonic() + 180
-    while True:
-        try:
-            return connect(url, compression=None)
-        except OSError:
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(0.1)

@@ -26,6 +26,32 @@ def scripted(number: int) -> bytes:
     ).encode()
 
 
+def _watch_and_record(
+    page: Page, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
+) -> None:
+    """Watch the skeleton on a body over stairs, record it, and store it as a capture."""
+    page.get_by_role("button", name=f"Watch on a body: {HERE}").press("Enter")
+    panel = page.get_by_role("region", name=f"{HERE} on a body")
+    picture = panel.get_by_role("img", name=f"{HERE}, moving a body, live")
+    expect(picture).to_have_attribute("data-drawn", "skin", timeout=PATIENCE_MS)
+    expect(panel.get_by_text("ms from arrival to sending")).to_be_visible(timeout=PATIENCE_MS)
+    panel.get_by_label("Ground", exact=True).select_option("steps")
+    panel.get_by_role("button", name="Agree on a pose").click()
+    page.get_by_role("menuitem", name="Stands on the floor now").click()
+    panel.get_by_role("button", name="Record").click()
+    recordings = page.get_by_role("region", name="Recordings")
+    expect(recordings.get_by_text(f"Recording {HERE}")).to_be_visible()
+    assert axe(page) == []
+    panel.scroll_into_view_if_needed()
+    screenshot(page, "performer")
+    recordings.get_by_role("button", name="Stop and store").click()
+    expect(recordings.get_by_text(f"{HERE} is stored as a capture")).to_be_visible(
+        timeout=PATIENCE_MS
+    )
+    expect(recordings.get_by_role("link", name="Open the capture")).to_be_visible()
+    page.get_by_role("button", name=f"Hide the body: {HERE}").click()
+
+
 def test_trackers_arrive_are_judged_and_are_put_on_limbs(
     live_server: LiveServer,
     page_factory: Callable[..., Page],
@@ -34,7 +60,8 @@ def test_trackers_arrive_are_judged_and_are_put_on_limbs(
 ) -> None:
     """Closed at first; doors are opened, two senders arrive, fall silent, and are forgotten.
 
-    A door whose port is taken says so and opens when it is free; an operator opens none.
+    A skeleton moves a body, and a recording of it is stored as a capture. A door whose port is
+    taken says so and opens when it is free; an operator opens none.
     """
     page = page_factory()
     experimenter = Experimenter(page, live_server.url)
@@ -84,6 +111,7 @@ def test_trackers_arrive_are_judged_and_are_put_on_limbs(
         expect(page.get_by_text("Two trackers are on the same limb")).to_be_hidden()
         suit.get_by_text("5 bones").click()
         expect(suit.get_by_role("row")).to_have_count(2 + len(NAMES) + len(BONES))
+        _watch_and_record(page, axe, screenshot)
         assert axe(page) == []
         page.mouse.wheel(0, -9000)
         screenshot(page, "trackers")

@@ -4,7 +4,7 @@
 reader of a format is imported when the first file of that format is read.
 """
 
-from app.adapters.captures.bvh_export import to_bvh
+from app.adapters.captures.bvh_export import safe_names, to_bvh
 from app.adapters.captures.capture import Capture, CaptureError, Limits, Reading
 from app.adapters.captures.formats import FORMATS, extensions, format_texts
 from app.adapters.captures.reader import read_capture, read_capture_file
@@ -23,6 +23,7 @@ __all__ = [
     "format_texts",
     "read_capture",
     "read_capture_file",
+    "safe_names",
     "text_lines",
     "to_bvh",
     "to_csv",

@@ -14,12 +14,21 @@ from app.adapters.live.natnet import (
     model_request,
 )
 from app.adapters.live.osc_trackers import OscTrackers
-from app.adapters.live.readings import Decoder, Pose, Problem, Reading
+from app.adapters.live.readings import (
+    BoneDefinition,
+    Decoder,
+    Pose,
+    Problem,
+    Reading,
+    SkeletonDefinition,
+)
+from app.adapters.live.skeletons import human_skeleton
 
 __all__ = [
     "COMMAND_PORT",
     "DATA_PORT",
     "MULTICAST_GROUP",
+    "BoneDefinition",
     "Decoder",
     "JsonTrackers",
     "NatNetClient",
@@ -27,7 +36,9 @@ __all__ = [
     "Pose",
     "Problem",
     "Reading",
+    "SkeletonDefinition",
     "connect_request",
+    "human_skeleton",
     "keep_alive",
     "model_request",
 ]

@@ -3,38 +3,51 @@
     {"source": "my script", "time_s": 12.345, "frame": 7,
      "trackers": {"left foot": {"position_m": [0.1, 0.9, -0.2], "rotation_wxyz": [1, 0, 0, 0]}}}
 
+A tracker with a `parent` is a bone of a skeleton: its pose is in the frame of that other tracker.
+
 Unlike the other doors it has our own frame and units, so nothing is converted. Unknown fields are
 refused, because a script with a misspelt field should not appear to work.
 """
 
 from collections import Counter
+from dataclasses import replace
+from functools import lru_cache
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from app.adapters.live.readings import (
     MAX_POSES,
+    BoneDefinition,
     Pose,
     Problem,
     Reading,
     Refused,
+    SkeletonDefinition,
+    Vector,
     checked_name,
     checked_position,
     checked_rotation,
     checked_time,
 )
+from app.adapters.live.skeletons import in_order
 
 _MALFORMED = "json_invalid"
+_NOWHERE: Vector = (0.0, 0.0, 0.0)
 
 
 class JsonTracker(BaseModel):
-    """A tracker's pose: metres, y up, right-handed; unit quaternion in the order w, x, y, z."""
+    """A tracker's pose: metres, y up, right-handed; unit quaternion in the order w, x, y, z.
+
+    `parent`: the tracker of the same packet in whose frame the pose is; null for the world.
+    """
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
     position_m: tuple[float, float, float] | None = None
     rotation_wxyz: tuple[float, float, float, float] | None = None
     tracked: bool = True
+    parent: str | None = None
 
 
 class JsonPacket(BaseModel):
@@ -49,7 +62,7 @@ class JsonPacket(BaseModel):
 
 
 class JsonTrackers:
-    """The decoder of the JSON door; it keeps nothing between packets."""
+    """The decoder of the JSON door; what it reads depends on no other packet."""
 
     def read(self, packet: bytes) -> Reading:
         """Return the trackers of a packet; never raises."""
@@ -65,15 +78,63 @@ class JsonTrackers:
         except Refused as refused:
             problems[refused.problem] += 1
             return Reading(problems=problems)
-        poses: list[Pose] = []
+        poses: dict[str, Pose] = {}
+        parents: dict[str, str] = {}
         for name, tracker in sent.trackers.items():
             try:
                 if len(poses) >= MAX_POSES:
                     raise Refused("limit")
-                poses.append(_pose(name, tracker))
+                pose = _pose(name, tracker)
+                poses[pose.tracker] = pose
+                if tracker.parent is not None:
+                    parents[pose.tracker] = checked_name(tracker.parent)
             except Refused as refused:
                 problems[refused.problem] += 1
-        return Reading(tuple(poses), source, time_s, sent.frame, problems)
+        skeletons = _skeletons(poses, parents, problems)
+        return Reading(tuple(poses.values()), source, time_s, sent.frame, problems, skeletons)
+
+
+def _skeletons(
+    poses: dict[str, Pose], parents: dict[str, str], problems: Counter[Problem]
+) -> tuple[SkeletonDefinition, ...]:
+    """Return the skeletons of a packet, and mark their bones as such.
+
+    Bones that are below no tracker of the world, because their parent is missing or is below
+    themselves, are removed and counted: their pose would mean nothing.
+    """
+    if not parents:
+        return ()
+    found = _trees(tuple(poses), tuple(parents.items()))
+    reached = {bone.tracker for one in found for bone in one.bones}
+    for name in parents.keys() - reached:
+        del poses[name]
+        problems["arguments"] += 1
+    for name in reached:
+        poses[name] = replace(poses[name], kind="bone")
+    return found
+
+
+@lru_cache(maxsize=32)
+def _trees(
+    names: tuple[str, ...], parents: tuple[tuple[str, str], ...]
+) -> tuple[SkeletonDefinition, ...]:
+    """Return a skeleton for each tracker in the world that is a parent.
+
+    Kept, because packets of a script repeat the same names.
+    """
+    children: dict[str, list[str]] = {}
+    for name, parent in parents:
+        children.setdefault(parent, []).append(name)
+    bones_below = {name for name, _ in parents}
+    found: list[SkeletonDefinition] = []
+    for root in (one for one in names if one in children and one not in bones_below):
+        waiting, bones = [root], [BoneDefinition(root, None, _NOWHERE)]
+        while waiting:
+            above = waiting.pop()
+            waiting += children.get(above, [])
+            bones += [BoneDefinition(one, above, None) for one in children.get(above, [])]
+        found.append(SkeletonDefinition(root, in_order(bones), in_parent=True))
+    return tuple(found)
 
 
 def _pose(name: str, tracker: JsonTracker) -> Pose:

@@ -56,12 +56,39 @@ class Pose:
     tracked: bool = True
 
 
+@dataclass(frozen=True, slots=True)
+class BoneDefinition:
+    """A bone of a skeleton, by its tracker's name, and its parent; None for the root.
+
+    `offset_m` is where the bone is in its parent's frame, zero for the root. It is None if the
+    definition does not tell; the bone's poses are then in the parent's frame and have it.
+    """
+
+    tracker: str
+    parent: str | None
+    offset_m: Vector | None
+
+
+@dataclass(frozen=True)
+class SkeletonDefinition:
+    """Which trackers of a source are the bones of one body: parents first, the root at the head.
+
+    `in_parent`: whether poses of bones are in their parent's frame; None if the source does not
+    tell. The root's pose is in the world in any case. At rest no bone is rotated.
+    """
+
+    name: str
+    bones: tuple[BoneDefinition, ...]
+    in_parent: bool | None
+
+
 @dataclass(frozen=True)
 class Reading:
     """What one packet says.
 
     `source` is the name by which the source introduces itself, empty if it does not. `time_s` is by
     the source's own clock, and `frame` its own counter; None where the protocol has none.
+    `skeletons` are those to which bones among the poses belong, as far as the source has told.
     """
 
     poses: tuple[Pose, ...] = ()
@@ -69,6 +96,7 @@ class Reading:
     time_s: float | None = None
     frame: int | None = None
     problems: Counter[Problem] = field(default_factory=Counter)
+    skeletons: tuple[SkeletonDefinition, ...] = ()
 
 
 class Decoder(Protocol):
@@ -93,7 +121,8 @@ def checked_name(name: object) -> str:
 def checked_position(numbers: Sequence[float]) -> Vector:
     """Return x, y, z in metres; raise Refused if one is not finite or implausibly far away."""
     x, y, z = numbers
-    if not all(abs(one) <= MAX_DISTANCE_M for one in (x, y, z)):  # False for NaN as well
+    most = MAX_DISTANCE_M
+    if not (-most <= x <= most and -most <= y <= most and -most <= z <= most):  # also for NaN
         raise Refused("number")
     return (x, y, z)
 

@@ -90,6 +90,15 @@ export const RULES = {
   },
   openDoor: { roles: DESIGNERS, routes: ["PUT /api/trackers/doors/{door}"] },
   wearTracker: { roles: RUNNERS, routes: ["PUT /api/trackers/limbs"] },
+  agreePose: { roles: RUNNERS, routes: ["POST /api/trackers/performers/pose"] },
+  recordPerformer: {
+    roles: DESIGNERS,
+    routes: [
+      "POST /api/trackers/recordings",
+      "POST /api/trackers/recordings/{recording_id}/capture",
+      "DELETE /api/trackers/recordings/{recording_id}",
+    ],
+  },
   network: { roles: RUNNERS, routes: ["GET /api/network"] },
   compare: {
     roles: READERS,

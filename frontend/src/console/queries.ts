@@ -5,6 +5,7 @@ import { network, sessions, studies } from "@shared/api/endpoints";
 import { demo, exports, lab, storageRoom, tryouts } from "@shared/api/housekeeping";
 import { type ImportMapping, imports } from "@shared/api/imports";
 import { type AuditFilter, audit, invitations, people } from "@shared/api/people";
+import { performers } from "@shared/api/performers";
 import { calibrations, consents, selfTests, suggestions } from "@shared/api/records";
 import { rights } from "@shared/api/rights";
 import { trackers } from "@shared/api/trackers";
@@ -145,6 +146,13 @@ export const selfTestsQuery = queryOptions({
 export const trackersQuery = queryOptions({
   queryKey: ["trackers"],
   queryFn: trackers.get,
+  refetchInterval: 1000,
+});
+
+/** Asked again every second, as the sources are: a recording's time goes on. */
+export const performersQuery = queryOptions({
+  queryKey: ["performers"],
+  queryFn: performers.get,
   refetchInterval: 1000,
 });
 

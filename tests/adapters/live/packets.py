@@ -5,6 +5,7 @@ The encoders are written from the protocols' descriptions, not from the decoders
 
 import struct
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 Version = tuple[int, int]
 Row = tuple[int, tuple[float, float, float], tuple[float, float, float, float], bool]
@@ -41,8 +42,11 @@ def definitions(
     version: Version,
     rigid_bodies: Mapping[int, str],
     skeletons: Mapping[int, tuple[str, Mapping[int, str]]],
+    tree: Mapping[int, tuple[int, Sequence[float]]] = MappingProxyType({}),
 ) -> bytes:
     """Return NatNet's definitions: a marker set, rigid bodies, skeletons with their bones.
+
+    `tree` has the parent and the offset of each bone of a skeleton; others have no parent.
 
     From 4.1 on also a kind of definition that does not exist, which its size lets readers skip.
     """
@@ -50,7 +54,9 @@ def definitions(
     parts += [(1, _definition(version, key, name)) for key, name in rigid_bodies.items()]
     for key, (name, bones) in skeletons.items():
         body = name.encode() + b"\0" + struct.pack("<2i", key, len(bones))
-        body += b"".join(_definition(version, one, bone) for one, bone in bones.items())
+        body += b"".join(
+            _definition(version, one, bone, tree.get(one)) for one, bone in bones.items()
+        )
         parts.append((2, body))
     if version >= (4, 1):
         parts.insert(0, (99, b"unknown"))
@@ -122,8 +128,11 @@ def _row(version: Version, row: Row) -> bytes:
     return body + (struct.pack("<h", int(tracked)) if version >= (2, 6) else b"")
 
 
-def _definition(version: Version, identity: int, name: str) -> bytes:
-    body = name.encode() + b"\0" + struct.pack("<2i3f", identity, -1, 0, 0, 0)
+def _definition(
+    version: Version, identity: int, name: str, place: tuple[int, Sequence[float]] | None = None
+) -> bytes:
+    parent, offset = place or (-1, (0.0, 0.0, 0.0))
+    body = name.encode() + b"\0" + struct.pack("<2i3f", identity, parent, *offset)
     if version >= (3, 0):
         body += struct.pack("<i6f2i", 2, *range(6), 0, 0)
     return body + (b"Marker 1\0Marker 2\0" if version >= (4, 0) else b"")

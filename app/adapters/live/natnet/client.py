@@ -20,6 +20,7 @@ from app.adapters.live.readings import (
     Problem,
     Reading,
     Refused,
+    SkeletonDefinition,
     checked_position,
     checked_rotation,
     checked_time,
@@ -41,6 +42,7 @@ class NatNetClient:
         self.version: tuple[int, int] | None = None
         self.server = ""
         self.definitions = Definitions()
+        self._skeletons: tuple[SkeletonDefinition, ...] = ()
         self.unnamed = False
         """Whether a frame had a body that the definitions do not name: ask for them again."""
 
@@ -68,6 +70,8 @@ class NatNetClient:
             raise Refused("malformed")
         elif message == MODEL_DEFINITIONS:
             self.definitions, self.unnamed = read_definitions(Fields(body, self.version)), False
+            self._skeletons = tuple(self.definitions.skeletons)
+            problems.update(self.definitions.problems)
         else:
             return self._reading(read_frame(Fields(body, self.version)), problems)
         return Reading(source=self.server, problems=problems)
@@ -95,7 +99,9 @@ class NatNetClient:
             except Refused as refused:
                 # A body that was never seen has no rotation: its quaternion is zero.
                 problems["unused" if not body.tracked else refused.problem] += 1
-        return Reading(tuple(poses), self.server, time_s, frame.number, problems)
+        return Reading(
+            tuple(poses), self.server, time_s, frame.number, problems, skeletons=self._skeletons
+        )
 
     def _pose(self, body: Body) -> Pose:
         if body.owner is None:

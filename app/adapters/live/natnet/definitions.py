@@ -1,21 +1,55 @@
-"""Read NatNet's definitions of models: which id is which rigid body or bone."""
+"""Read NatNet's definitions of models: which id is which rigid body or bone, and whose parent.
 
-from collections.abc import Callable
+A bone's offset from its parent is told, and that a skeleton at rest is in a T-pose in which no bone
+is rotated; whether frames have bones in their parent's frame or in the world is not told.
+"""
+
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from app.adapters.live.natnet.fields import Fields
-from app.adapters.live.readings import MAX_NAME, MAX_POSES, Refused
+from app.adapters.live.readings import (
+    MAX_NAME,
+    MAX_POSES,
+    BoneDefinition,
+    Problem,
+    Refused,
+    SkeletonDefinition,
+    Vector,
+    checked_position,
+)
+from app.adapters.live.skeletons import in_order
 
 MAX_SKELETONS = 32
+_BONE = 0xFFFF
+"""The part of an id that tells a bone; the upper half repeats the skeleton's."""
+_NO_PARENT = (0, -1)
+"""The parent of a root, by version; no bone has these ids."""
+_NOWHERE: Vector = (0.0, 0.0, 0.0)
 _SMALLEST = 5  # bytes of any definition: its kind, and at least an empty name
 
 
 @dataclass(frozen=True)
 class Definitions:
-    """The names by id: of rigid bodies, and of each skeleton's or asset's bones."""
+    """The names by id: of rigid bodies, and of each skeleton's or asset's bones.
+
+    `skeletons` are those whose bones are one tree; `problems` counts what is wrong with the others.
+    """
 
     rigid_bodies: dict[int, str] = field(default_factory=dict)
     bones: dict[int, dict[int, str]] = field(default_factory=dict)
+    skeletons: list[SkeletonDefinition] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class _Body:
+    """A rigid body or bone as it is defined; `parent` is an id among its skeleton's bones."""
+
+    identity: int
+    name: str
+    parent: int
+    offset_m: Vector
 
 
 def read_definitions(fields: Fields) -> Definitions:
@@ -43,10 +77,10 @@ def _marker_set(fields: Fields, _: Definitions) -> None:
 
 
 def _rigid_body(fields: Fields, found: Definitions) -> None:
-    identity, name = _body(fields)
+    body = _body(fields)
     if len(found.rigid_bodies) >= MAX_POSES:
         raise Refused("limit")
-    found.rigid_bodies[identity] = name
+    found.rigid_bodies[body.identity] = body.name
 
 
 def _skeleton(fields: Fields, found: Definitions) -> None:
@@ -58,26 +92,47 @@ def _skeleton(fields: Fields, found: Definitions) -> None:
 def _bones(fields: Fields, found: Definitions, identity: int, owner: str) -> None:
     if len(found.bones) >= MAX_SKELETONS:
         raise Refused("limit")
-    bones = found.bones.setdefault(identity, {})
+    names = found.bones.setdefault(identity, {})
+    bodies: list[_Body] = []
     for _ in range(fields.count(20)):
-        bone, name = _body(fields)
-        if len(bones) >= MAX_POSES:
+        body = _body(fields)
+        if len(names) >= MAX_POSES:
             raise Refused("limit")
         # Two skeletons have bones of the same name; older versions of Motive put its own before it.
-        bones[bone & 0xFFFF] = name if name.startswith(owner) else f"{owner}_{name}"[:MAX_NAME]
+        own = body.name.startswith(owner)
+        names[body.identity & _BONE] = body.name if own else f"{owner}_{body.name}"[:MAX_NAME]
+        bodies.append(body)
+    if sum(one.parent in _NO_PARENT for one in bodies) > 1:
+        return  # bodies beside each other, such as those of some assets: nothing is wrong with them
+    try:
+        defined = in_order(list(_tree(bodies, names)))
+        found.skeletons.append(SkeletonDefinition(owner[:MAX_NAME], defined, in_parent=None))
+    except Refused as refused:
+        found.problems.append(refused.problem)
 
 
-def _body(fields: Fields) -> tuple[int, str]:
+def _tree(bodies: Iterable[_Body], names: dict[int, str]) -> Iterable[BoneDefinition]:
+    """Yield the bones with their parents' names; raises Refused for one that cannot be placed."""
+    for body in bodies:
+        name = names[body.identity & _BONE]
+        if body.parent in _NO_PARENT:
+            yield BoneDefinition(name, None, _NOWHERE)
+        elif (parent := names.get(body.parent & _BONE)) is None:
+            raise Refused("arguments")
+        else:
+            yield BoneDefinition(name, parent, checked_position(body.offset_m))
+
+
+def _body(fields: Fields) -> _Body:
     name = fields.text()[:MAX_NAME]
-    identity = fields.integer()
-    fields.skip(4 + 12)  # the parent's id, and the offset from it
+    identity, parent, offset_m = fields.integer(), fields.integer(), fields.vector()
     if fields.version >= (3, 0):
         markers = fields.count(16)
         fields.skip(16 * markers)  # positions and active labels
         if fields.version >= (4, 0):
             for _ in range(markers):
                 fields.text()
-    return identity, name
+    return _Body(identity, name, parent, offset_m)
 
 
 def _force_plate(fields: Fields, _: Definitions) -> None:

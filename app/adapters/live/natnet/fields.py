@@ -3,6 +3,7 @@
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from app.adapters.live.readings import Quaternion, Refused, Vector
 
@@ -36,6 +37,12 @@ class Fields:
         start = self._at
         self.skip(struct.calcsize(f"<{layout}"))
         return struct.unpack_from(f"<{layout}", self._data, start)
+
+    def rows(self, layout: struct.Struct, count: int) -> Iterator[tuple[Any, ...]]:
+        """Return rows of a layout of fixed size: much faster than reading field by field."""
+        start = self._at
+        self.skip(layout.size * count)
+        return layout.iter_unpack(memoryview(self._data)[start : self._at])
 
     def integer(self, layout: str = "i") -> int:
         """Return one integer, of four bytes and signed unless `layout` says otherwise."""

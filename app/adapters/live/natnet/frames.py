@@ -1,11 +1,17 @@
 """Read a NatNet frame: rigid bodies, skeletons and the time; markers and devices are skipped."""
 
+import struct
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from app.adapters.live.natnet.fields import Fields
 from app.adapters.live.readings import Quaternion, Refused, Vector
 
+_ROW = struct.Struct("<i3f4ffh")
+"""Id, position, quaternion x, y, z, w, mean error of the markers, and flags."""
+_BONE = 0xFFFF
+"""The part of an id that tells a bone; the upper half repeats the skeleton's."""
 _END_BYTES = 4  # the frame ends with a zero
 
 
@@ -38,13 +44,12 @@ def read_frame(fields: Fields) -> Frame:
         fields.skip(12 * fields.count(12))
     for _ in _section(fields, 12):
         fields.skip(12)
-    for _ in _section(fields, 32):
-        frame.bodies.append(_body(fields, None))
+    with _counted(fields, 32) as count:
+        frame.bodies += _bodies(fields, None, count)
     if version > (2, 0):
         for _ in _section(fields, 8):
             skeleton = fields.integer()
-            for _bone in range(fields.count(32)):
-                frame.bodies.append(_body(fields, skeleton))
+            frame.bodies += _bodies(fields, skeleton, fields.count(32))
     if version >= (4, 1):
         for _ in _section(fields, 12):
             _asset(fields, frame)
@@ -55,11 +60,29 @@ def read_frame(fields: Fields) -> Frame:
 
 def _section(fields: Fields, smallest: int) -> Iterator[int]:
     """Go through the items of a section, which from 4.1 on has its size after the count."""
+    with _counted(fields, smallest) as count:
+        yield from range(count)
+
+
+@contextmanager
+def _counted(fields: Fields, smallest: int) -> Iterator[int]:
+    """Read a section, and give the number of its items."""
     count = fields.integer()
     with fields.sized():
         if not 0 <= count * smallest <= fields.left:
             raise Refused("malformed")
-        yield from range(count)
+        yield count
+
+
+def _bodies(fields: Fields, owner: int | None, count: int) -> list[Body]:
+    """Read bodies, which from 3.0 on have no markers and so are all of one size."""
+    if fields.version < (3, 0):
+        return [_body(fields, owner) for _ in range(count)]
+    mask = -1 if owner is None else _BONE
+    return [
+        Body(owner, identity & mask, (px, py, pz), (w, x, y, z), bool(flags & 1))
+        for identity, px, py, pz, x, y, z, w, _error, flags in fields.rows(_ROW, count)
+    ]
 
 
 def _body(fields: Fields, owner: int | None) -> Body:
@@ -75,14 +98,13 @@ def _body(fields: Fields, owner: int | None) -> Body:
     flag = version < (2, 6) or bool(fields.integer("h") & 1)
     tracked = flag or (owner is not None and version < (3, 0))
     if owner is not None:
-        identity &= 0xFFFF  # the upper half repeats the skeleton's id
+        identity &= _BONE
     return Body(owner, identity, position, rotation, tracked)
 
 
 def _asset(fields: Fields, frame: Frame) -> None:
     identity = fields.integer()
-    for _ in range(fields.count(38)):
-        frame.bodies.append(_body(fields, identity))
+    frame.bodies += _bodies(fields, identity, fields.count(38))
     fields.skip(26 * fields.count(26))
 
 

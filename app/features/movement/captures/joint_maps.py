@@ -77,10 +77,14 @@ def current_map(db: Session, capture: CaptureRow) -> CurrentMap:
             value=capture.id,
             remedy="Use a capture that has one, or record markers that show the whole body.",
         )
-    rig = _rig(summary.skeleton)
+    return map_of_rig(db, _rig(summary.skeleton))
+
+
+def map_of_rig(db: Session, rig: Rig) -> CurrentMap:
+    """Return the joint map of any skeleton, stored or live; only names and hierarchy matter."""
     newest = (
         select(SavedJointMap)
-        .where(SavedJointMap.fingerprint == summary.skeleton.fingerprint)
+        .where(SavedJointMap.fingerprint == rig.fingerprint)
         .order_by(SavedJointMap.version.desc())
         .limit(1)
     )

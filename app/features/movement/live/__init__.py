@@ -5,6 +5,20 @@ it, such as for a session's headset.
 """
 
 from app.features.movement.live.service import LiveTracking, limbs_of
-from app.features.movement.live.sources import DoorKey, Sample, SourceClock
+from app.features.movement.live.sources import (
+    FORGOTTEN_S,
+    SILENT_S,
+    DoorKey,
+    Sample,
+    SourceClock,
+)
 
-__all__ = ["DoorKey", "LiveTracking", "Sample", "SourceClock", "limbs_of"]
+__all__ = [
+    "FORGOTTEN_S",
+    "SILENT_S",
+    "DoorKey",
+    "LiveTracking",
+    "Sample",
+    "SourceClock",
+    "limbs_of",
+]

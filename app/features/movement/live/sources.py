@@ -14,7 +14,7 @@ from itertools import pairwise
 from statistics import median
 from typing import Literal
 
-from app.adapters.live import Pose, Problem, Reading
+from app.adapters.live import Pose, Problem, Reading, SkeletonDefinition
 
 DoorKey = Literal["osc", "natnet", "json"]
 MAX_SOURCES = 16
@@ -49,7 +49,7 @@ class Sample:
     label, `address` that of the sender. `source_s` is the time by the source's own clock, None if
     it sends none. `mapped_s` is that time on the server's clock, with its uncertainty; without a
     source time it is the arrival. `uncertainty_s` is None without a source time, and while it is
-    unknown.
+    unknown. `skeletons` are as in `Reading`.
     """
 
     door: DoorKey | Literal["headset"]
@@ -60,6 +60,7 @@ class Sample:
     arrival_s: float
     mapped_s: float
     uncertainty_s: float | None
+    skeletons: tuple[SkeletonDefinition, ...] = ()
 
 
 class SourceClock:
@@ -228,6 +229,7 @@ class Source:
             arrival_s=arrival_s,
             mapped_s=(reading.time_s or 0.0) + (offset or 0.0) if is_timed else arrival_s,
             uncertainty_s=self.clock.uncertainty_s if is_timed else None,
+            skeletons=reading.skeletons,
         )
 
     def _in_order(self, reading: Reading) -> bool:

@@ -40,6 +40,7 @@ import { studyDe, studyEn } from "../pages/study/texts";
 import { validityDe, validityEn } from "../pages/study/validityTexts";
 import { versionsDe, versionsEn } from "../pages/study/versionTexts";
 import { trackersDe, trackersEn } from "../pages/trackers/texts";
+import { performerDe, performerEn } from "../performer/texts";
 import { preregistrationDe, preregistrationEn } from "../preregistration/texts";
 import { replayDe, replayEn } from "../replay/texts";
 import { rightsDe, rightsEn } from "../rights/texts";
@@ -72,6 +73,7 @@ const allEn = {
   ...expertEn,
   ...equipmentEn,
   ...trackersEn,
+  ...performerEn,
   ...selfTestsEn,
   ...verdictsEn,
   ...capturesEn,
@@ -119,6 +121,7 @@ const allDe = {
   ...expertDe,
   ...equipmentDe,
   ...trackersDe,
+  ...performerDe,
   ...selfTestsDe,
   ...verdictsDe,
   ...capturesDe,

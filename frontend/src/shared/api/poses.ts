@@ -7,6 +7,7 @@
  * more than a few on the way, so the newest pose is shown, however slow the page is.
  */
 import type { FeedState } from "./live";
+import { type LiveSocket, openLiveSocket } from "./liveSocket";
 
 export type PoseStream = "target" | "actual";
 type Vector = readonly [x: number, y: number, z: number];
@@ -98,12 +99,6 @@ function decoded(bytes: ArrayBuffer, streams: Readonly<Record<number, PoseStream
   };
 }
 
-export interface PoseFeed {
-  /** Acknowledge that so many poses were drawn, or skipped in favour of newer ones. */
-  readonly drawn: (count: number) => void;
-  readonly close: () => void;
-}
-
 export interface PoseFeedOptions {
   readonly url: string;
   readonly onState: (state: FeedState) => void;
@@ -115,42 +110,11 @@ export interface PoseFeedOptions {
   readonly open?: (url: string) => WebSocket;
 }
 
-const WAITS_MS = [500, 1000, 2000, 4000] as const;
 /** Close codes for "not signed in" and "no access to this session": retrying would not help. */
 const REFUSED = [4401, 4403];
 
-/** The WebSocket's URL with its scheme, since not every browser accepts a relative one. */
-function socketUrl(path: string): string {
-  const url = new URL(path, location.href);
-  url.protocol = url.protocol.replace("http", "ws");
-  return url.href;
-}
-
 /** Open the feed; it reconnects automatically after a broken connection. */
-export function openPoses(options: PoseFeedOptions): PoseFeed {
-  const open = options.open ?? ((url: string) => new WebSocket(socketUrl(url)));
-  let socket: WebSocket | null = null;
-  let timer: ReturnType<typeof setTimeout> | undefined;
-  let failures = 0;
-  let closed = false;
-
-  const connect = () => {
-    const opened = open(options.url);
-    opened.binaryType = "arraybuffer";
-    socket = opened;
-    opened.onmessage = ({ data }) => {
-      failures = 0;
-      receive(data);
-    };
-    opened.onclose = ({ code }) => {
-      if (closed) return;
-      options.onState("lost");
-      if (REFUSED.includes(code)) return;
-      timer = setTimeout(connect, WAITS_MS[Math.min(failures, WAITS_MS.length - 1)]);
-      failures += 1;
-    };
-  };
-
+export function openPoses(options: PoseFeedOptions): LiveSocket {
   const receive = (data: unknown) => {
     if (data instanceof ArrayBuffer) {
       const pose = decodePose(data);
@@ -166,18 +130,12 @@ export function openPoses(options: PoseFeedOptions): PoseFeed {
     options.onState("live");
     options.onSetup(message);
   };
-
   options.onState("connecting");
-  connect();
-  return {
-    drawn: (count) => {
-      if (socket?.readyState !== 1) return;
-      for (let one = 0; one < count; one++) socket.send("");
-    },
-    close: () => {
-      closed = true;
-      clearTimeout(timer);
-      socket?.close();
-    },
-  };
+  return openLiveSocket({
+    url: options.url,
+    refused: REFUSED,
+    onMessage: receive,
+    onLost: () => options.onState("lost"),
+    open: options.open,
+  });
 }

@@ -2862,6 +2862,108 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/trackers/performers": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Performers
+         * @description Return the skeletons that come through the doors, and the recordings of them.
+         */
+        readonly get: operations["get_performers_api_trackers_performers_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/trackers/performers/pose": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Pose
+         * @description Agree about the pose in which a performer is now, for everybody who watches.
+         */
+        readonly post: operations["post_pose_api_trackers_performers_pose_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/trackers/recordings": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Recording
+         * @description Begin to record a performer's own movement; it is kept in memory until it is stored.
+         */
+        readonly post: operations["post_recording_api_trackers_recordings_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/trackers/recordings/{recording_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Recording
+         * @description Discard a recording.
+         */
+        readonly delete: operations["delete_recording_api_trackers_recordings__recording_id__delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/trackers/recordings/{recording_id}/capture": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Recorded Capture
+         * @description End a recording and store it as a capture, a BVH file at a constant rate.
+         *
+         *     If that fails, the recording stays and can be stored again.
+         */
+        readonly post: operations["post_recorded_capture_api_trackers_recordings__recording_id__capture_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/tryout": {
         readonly parameters: {
             readonly query?: never;
@@ -6417,6 +6519,16 @@ export interface components {
             readonly old: number;
         };
         /**
+         * Gap
+         * @description A time in which nothing came, in seconds from the beginning.
+         */
+        readonly Gap: {
+            /** From S */
+            readonly from_s: number;
+            /** To S */
+            readonly to_s: number;
+        };
+        /**
          * GlanceView
          * @description The results of one limb in brief, each null if it could not be tested.
          *
@@ -8452,6 +8564,78 @@ export interface components {
             readonly points_m: readonly (readonly number[])[];
         };
         /**
+         * PerformersView
+         * @description All performers, and the recordings that are going on or wait to be stored.
+         */
+        readonly PerformersView: {
+            /** Performers */
+            readonly performers: readonly components["schemas"]["PerformerView"][];
+            /** Recordings */
+            readonly recordings: readonly components["schemas"]["RecordingView"][];
+        };
+        /**
+         * PerformerView
+         * @description A skeleton that a source sends, or has sent.
+         *
+         *     `state`: `gathering` while `missing` bones were not seen, `unusable` if its bones cannot be told
+         *     apart (`problems`), else `ready`. `in_parent`: whether poses come in the parent's frame, null
+         *     before that is known. `is_used`: of several senders of one name this one is used, and `others`
+         *     are the addresses of the rest.
+         */
+        readonly PerformerView: {
+            /** Address */
+            readonly address: string;
+            /** Bones */
+            readonly bones: number;
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** In Parent */
+            readonly in_parent: boolean | null;
+            /** Is Silent */
+            readonly is_silent: boolean;
+            /** Is T Pose Shown */
+            readonly is_t_pose_shown: boolean;
+            /** Is Used */
+            readonly is_used: boolean;
+            /** Missing */
+            readonly missing: readonly string[];
+            /** Others */
+            readonly others: readonly string[];
+            /** Problems */
+            readonly problems: readonly string[];
+            /** Rate Hz */
+            readonly rate_hz: number | null;
+            /** Silent S */
+            readonly silent_s: number;
+            /** Skeleton */
+            readonly skeleton: string;
+            /** Source */
+            readonly source: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "gathering" | "unusable" | "ready";
+        };
+        /**
+         * PerformerWish
+         * @description Which performer: of two senders of one name, the one that is used.
+         */
+        readonly PerformerWish: {
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** Skeleton */
+            readonly skeleton: string;
+            /** Source */
+            readonly source: string;
+        };
+        /**
          * PersonChange
          * @description Changes to an account; omitted fields stay as they are. `studies` null means all studies.
          */
@@ -8638,6 +8822,26 @@ export interface components {
             readonly about: string;
             /** Name */
             readonly name: string;
+        };
+        /**
+         * PoseWish
+         * @description An agreement with a performer about the pose in which they are now.
+         */
+        readonly PoseWish: {
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /**
+             * Pose
+             * @enum {string}
+             */
+            readonly pose: "standing" | "t_pose" | "as_sent";
+            /** Skeleton */
+            readonly skeleton: string;
+            /** Source */
+            readonly source: string;
         };
         /**
          * PredictedView
@@ -9082,6 +9286,62 @@ export interface components {
              * Format: date-time
              */
             readonly stored_at: string;
+        };
+        /**
+         * RecordingStored
+         * @description A recording that is now a capture.
+         *
+         *     `gaps` are times in which nothing came: the movement is interpolated there. `held_share` is the
+         *     share of bones whose pose was lost or not sent.
+         */
+        readonly RecordingStored: {
+            /** Capture Id */
+            readonly capture_id: string;
+            /** Duration S */
+            readonly duration_s: number;
+            /** Frames */
+            readonly frames: number;
+            /** Gaps */
+            readonly gaps: readonly components["schemas"]["Gap"][];
+            /** Held Share */
+            readonly held_share: number;
+            /** Rate Hz */
+            readonly rate_hz: number;
+        };
+        /**
+         * RecordingView
+         * @description A recording that is not a capture yet; at most `limit_s` long.
+         */
+        readonly RecordingView: {
+            /** By */
+            readonly by: string;
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** Duration S */
+            readonly duration_s: number;
+            /** Frames */
+            readonly frames: number;
+            /** Id */
+            readonly id: string;
+            /** Limit S */
+            readonly limit_s: number;
+            /**
+             * Since
+             * Format: date-time
+             */
+            readonly since: string;
+            /** Skeleton */
+            readonly skeleton: string;
+            /** Source */
+            readonly source: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "running" | "ended" | "full" | "changed";
         };
         /**
          * Refusal
@@ -18599,6 +18859,206 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["LiveView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_performers_api_trackers_performers_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PerformersView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_pose_api_trackers_performers_pose_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["PoseWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PerformersView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_recording_api_trackers_recordings_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["PerformerWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["RecordingView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_recording_api_trackers_recordings__recording_id__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly recording_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_recorded_capture_api_trackers_recordings__recording_id__capture_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly recording_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["RecordingStored"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

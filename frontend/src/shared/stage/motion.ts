@@ -30,6 +30,20 @@ export interface PointMotion {
   readonly fingers?: Float32Array | Int16Array;
 }
 
+/** A skeleton at one moment, whose positions are written in place as it moves. */
+export const momentOf = (
+  { joints, parents }: { readonly joints: readonly string[]; readonly parents: readonly number[] },
+  positions: Float32Array,
+): PointMotion => ({
+  kind: "skeleton",
+  names: joints,
+  parents,
+  frames: 1,
+  rateHz: 1,
+  recordedRateHz: 1,
+  positions,
+});
+
 /** Thrown if the bytes are not a movement: truncated, or of another format. */
 export class MotionError extends Error {
   override readonly name = "MotionError";

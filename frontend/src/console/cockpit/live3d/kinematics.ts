@@ -4,6 +4,9 @@
 import type { PoseSetup } from "@shared/api/poses";
 import { multiply, type Quaternion, rotate, type Vector } from "@shared/rotations";
 
+/** A body's joints, their parents (-1: the world), and where each is in its parent's frame. */
+type Joints = Pick<PoseSetup, "joints" | "parents" | "offsets_m">;
+
 export interface Placed {
   /** x, y, z of every joint, metres in the world. Overwritten by `place`. */
   readonly positions: Float32Array;
@@ -17,7 +20,7 @@ export const makePlaced = (joints: number): Placed => ({
 });
 
 /** Place the joints; `values` are root position and rotations wxyz. NaN stays NaN. */
-export function place(setup: PoseSetup, values: Float32Array, into: Placed): void {
+export function place(setup: Joints, values: Float32Array, into: Placed): void {
   const { positions, rotations } = into;
   setup.parents.forEach((parent, joint) => {
     const [w = 1, x = 0, y = 0, z = 0] = values.subarray(3 + 4 * joint, 7 + 4 * joint);
@@ -44,7 +47,7 @@ export function rotationOf(rotations: Float32Array, joint: number): Quaternion {
 }
 
 /** The rest pose, standing on the floor: a body's proportions before it moves. */
-export function restValues(setup: PoseSetup): Float32Array {
+export function restValues(setup: Joints): Float32Array {
   const values = new Float32Array(3 + 4 * setup.joints.length);
   values.set(setup.offsets_m[0] ?? [0, 0, 0]);
   for (let joint = 0; joint < setup.joints.length; joint++) values[3 + 4 * joint] = 1;

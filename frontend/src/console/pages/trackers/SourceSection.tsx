@@ -1,5 +1,6 @@
 /** A source: whose clock it is on, what is wrong with its packets, and each of its trackers. */
 import { NativeSelect, Table } from "@mantine/core";
+import type { Performers } from "@shared/api/performers";
 import { type LimbWish, type Source, type Tracker, trackers } from "@shared/api/trackers";
 import { decimals, duration, measuredTime, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
@@ -9,6 +10,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Failure } from "../../errors";
 import { type Key, useTexts } from "../../i18n";
+import { SkeletonList } from "../../performer/SkeletonList";
 import { usePermissions } from "../../permissions";
 import { trackersQuery } from "../../queries";
 import classes from "./Trackers.module.css";
@@ -22,9 +24,11 @@ const NOW_S = 1.5;
 interface SourceSectionProps {
   readonly source: Source;
   readonly limbs: readonly string[];
+  /** Undefined until they are known. */
+  readonly skeletons: Performers | undefined;
 }
 
-export function SourceSection({ source, limbs }: SourceSectionProps): JSX.Element {
+export function SourceSection({ source, limbs, skeletons }: SourceSectionProps): JSX.Element {
   const { t } = useTexts();
   // Bones have their place in a skeleton already; only what is strapped on has a limb to choose.
   const isBone = (one: Tracker): boolean => one.kind === "bone" || one.kind === "root";
@@ -46,6 +50,9 @@ export function SourceSection({ source, limbs }: SourceSectionProps): JSX.Elemen
       </div>
       {source.same_name && <Notice tone="warn">{t("trackers.sameName")}</Notice>}
       <Figures source={source} />
+      {bones.length > 0 && skeletons !== undefined && (
+        <SkeletonList source={source} all={skeletons} />
+      )}
       {worn.length > 0 && <TrackerTable source={source} own={worn} limbs={limbs} />}
       {bones.length > 0 && (
         <details className={classes.bones}>

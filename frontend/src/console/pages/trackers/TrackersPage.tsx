@@ -7,8 +7,9 @@ import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link } from "wouter";
 import { type Key, useTexts } from "../../i18n";
+import { Recordings } from "../../performer/Recordings";
 import { usePermissions } from "../../permissions";
-import { trackersQuery } from "../../queries";
+import { performersQuery, trackersQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
 import { useTitle } from "../../ui/page";
@@ -37,6 +38,7 @@ export function TrackersPage(): JSX.Element {
 function Parts({ all }: { readonly all: Trackers }): JSX.Element {
   const { t } = useTexts();
   const canOpen = usePermissions()("openDoor");
+  const { data: skeletons } = useQuery(performersQuery);
   return (
     <>
       <section aria-labelledby="doors">
@@ -65,6 +67,7 @@ function Parts({ all }: { readonly all: Trackers }): JSX.Element {
             })}
           </Notice>
         ))}
+        <Recordings all={skeletons?.recordings ?? []} />
         {all.sources.length === 0 ? (
           <EmptyState icon="plug" title={t("trackers.empty")}>
             {t("trackers.empty.body")}
@@ -75,6 +78,7 @@ function Parts({ all }: { readonly all: Trackers }): JSX.Element {
               key={`${source.door} ${source.address} ${source.name}`}
               source={source}
               limbs={all.limbs}
+              skeletons={skeletons}
             />
           ))
         )}
