@@ -55,6 +55,12 @@ def store_trial(intake: Intake, trial: TrialContent, outcome: Outcome) -> None:
     outcome.positions[position.stream, position.epoch] = position
 
 
+def end_trial(intake: Intake, trial_id: str) -> None:
+    """Delete what is left of a self-test, also what arrived with its end and is not written yet."""
+    intake.flush()
+    forget_trial(intake.db, trial_id)
+
+
 def forget_trial(db: Session, trial_id: str | None = None) -> None:
     """Delete the batches of a self-test, or of all of them."""
     mine = () if trial_id is None else (TRIALS.c.trial_id == trial_id,)

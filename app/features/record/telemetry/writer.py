@@ -23,7 +23,7 @@ from app.features.record.telemetry.summaries import Summariser
 from app.features.record.telemetry.trials import (
     TrialContent,
     TrialEnd,
-    forget_trial,
+    end_trial,
     store_trial,
 )
 from app.platform.context import AppContext, Part
@@ -301,4 +301,4 @@ def _store_one(
         case TrialContent() as trial:
             store_trial(intake, trial, outcome)
         case TrialEnd(trial_id):
-            forget_trial(intake.db, trial_id)
+            end_trial(intake, trial_id)

@@ -16,10 +16,18 @@ from sqlalchemy import func, select
 
 from app.features.record.self_tests.storage import BURST_BYTES, BYTES_PER_S, PLANNED_S, Allowance
 from app.features.record.self_tests.verdicts import RULES
-from app.features.record.telemetry import stop_running_clocks
+from app.features.record.telemetry import (
+    NO_SESSION,
+    Arrival,
+    TelemetryWriter,
+    TrialContent,
+    TrialEnd,
+    stop_running_clocks,
+)
+from app.features.record.telemetry.writer import ServerSender
 from app.features.results.exports.writing import export_study
 from app.models import HeadsetTest, HeadsetTestBatch, SessionEvent, TelemetryBatch, TelemetryStream
-from app.wire import BODY_STREAMS, StreamName
+from app.wire import BODY_STREAMS, StreamName, decode_batch
 from tests.api.people import sign_in
 from tests.features.lab import STUDY, Json, Lab, error, ok
 from tests.features.movement.avatar.test_avatars import CAST, new
@@ -263,6 +271,21 @@ def test_a_self_test_sends_no_faster_than_a_session(fresh_lab: Lab) -> None:
     assert (heard["type"], heard["code"]) == ("error", "too_large")
     assert "faster than a session" in heard["message"]
     await_empty(fresh_lab)
+
+
+@pytest.mark.one_engine
+def test_batches_that_are_committed_with_the_end_of_their_test_are_not_kept(
+    fresh_lab: Lab,
+) -> None:
+    """On a busy server the last batches and the end of a self-test come into one commit."""
+    writer = fresh_lab.context.part(TelemetryWriter)
+    contents = [
+        TrialContent("a-trial", decode_batch(raw).header, raw) for raw in (batch(0), batch(1))
+    ]
+    writer._commit(
+        [Arrival(NO_SESSION, ServerSender(), one) for one in (*contents, TrialEnd("a-trial"))]
+    )
+    assert kept(fresh_lab) == 0
 
 
 def test_the_allowance_of_bytes_fills_again_at_its_rate() -> None:
