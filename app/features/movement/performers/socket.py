@@ -131,8 +131,10 @@ class _Watcher:
     async def _receive(self) -> None:
         """Note what was drawn, until the page closes the socket."""
         async for _ in self.socket.iter_text():
+            is_waited_for = self._undrawn >= self.watched.ahead
             self._undrawn = max(0, self._undrawn - 1)
-            self._news.set()
+            if is_waited_for:
+                self._news.set()
 
     async def _send(self, performers: Performers) -> None:
         while True:
