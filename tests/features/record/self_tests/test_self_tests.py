@@ -282,9 +282,8 @@ def test_batches_that_are_committed_with_the_end_of_their_test_are_not_kept(
     contents = [
         TrialContent("a-trial", decode_batch(raw).header, raw) for raw in (batch(0), batch(1))
     ]
-    writer._commit(
-        [Arrival(NO_SESSION, ServerSender(), one) for one in (*contents, TrialEnd("a-trial"))]
-    )
+    arrived = [Arrival(NO_SESSION, ServerSender(), one) for one in contents]
+    writer._commit([*arrived, Arrival(NO_SESSION, ServerSender(), TrialEnd("a-trial"))])
     assert kept(fresh_lab) == 0
 
 
