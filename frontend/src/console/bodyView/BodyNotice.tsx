@@ -12,6 +12,22 @@ interface BodyNoticeProps {
   readonly instead?: boolean;
 }
 
+/** Says that pictures of the model are missing, so that its parts are grey, and what to do. */
+function Plain({ body }: { readonly body: BodyState }): JSX.Element {
+  const { t } = useTexts();
+  const { count = 0, isDecoderMissing = false } = body.model?.missing ?? {};
+  return (
+    <span className={classes.corner} role="status">
+      {t(isDecoderMissing ? "bodyView.plain.decoder" : "bodyView.plain", { count })}
+      {isDecoderMissing && (
+        <Button size="compact-xs" variant="default" onClick={body.retry}>
+          {t("error.retry")}
+        </Button>
+      )}
+    </span>
+  );
+}
+
 export function BodyNotice({ body, instead = false }: BodyNoticeProps): JSX.Element | null {
   const { t } = useTexts();
   if (body.state === "loading") {
@@ -21,6 +37,7 @@ export function BodyNotice({ body, instead = false }: BodyNoticeProps): JSX.Elem
       </span>
     );
   }
+  if (body.model !== null && body.model.missing.count > 0) return <Plain body={body} />;
   if (body.state !== "failed") return null;
   return (
     <span className={instead ? classes.corner : classes.middle} role="status">

@@ -13,6 +13,14 @@ export const bodyViewEn = {
   "bodyView.failed": "The body cannot be shown: {{reason}}",
   "bodyView.failed.skeleton":
     "The body cannot be shown, so the stick figure is drawn instead: {{reason}}",
+  "bodyView.plain_one":
+    "Drawn without one of its textures, which this browser cannot read. Export the model with PNG or JPEG textures.",
+  "bodyView.plain_other":
+    "Drawn without {{count}} of its textures, which this browser cannot read. Export the model with PNG or JPEG textures.",
+  "bodyView.plain.decoder_one":
+    "Drawn without one of its textures: the decoder of compressed textures (KTX2) could not be loaded from the server.",
+  "bodyView.plain.decoder_other":
+    "Drawn without {{count}} of its textures: the decoder of compressed textures (KTX2) could not be loaded from the server.",
   "bodyView.drawn": "Drawn as",
   "bodyView.drawn.skin": "Body",
   "bodyView.drawn.skeleton": "Stick figure",
@@ -32,6 +40,14 @@ export const bodyViewDe: Readonly<Record<keyof typeof bodyViewEn, string>> = {
   "bodyView.failed": "Der Körper kann nicht angezeigt werden: {{reason}}",
   "bodyView.failed.skeleton":
     "Der Körper kann nicht angezeigt werden; stattdessen wird die Strichfigur gezeichnet: {{reason}}",
+  "bodyView.plain_one":
+    "Gezeichnet ohne eine seiner Texturen, die dieser Browser nicht lesen kann. Exportieren Sie das Modell mit Texturen als PNG oder JPEG.",
+  "bodyView.plain_other":
+    "Gezeichnet ohne {{count}} seiner Texturen, die dieser Browser nicht lesen kann. Exportieren Sie das Modell mit Texturen als PNG oder JPEG.",
+  "bodyView.plain.decoder_one":
+    "Gezeichnet ohne eine seiner Texturen: Der Decoder für komprimierte Texturen (KTX2) konnte nicht vom Server geladen werden.",
+  "bodyView.plain.decoder_other":
+    "Gezeichnet ohne {{count}} seiner Texturen: Der Decoder für komprimierte Texturen (KTX2) konnte nicht vom Server geladen werden.",
   "bodyView.drawn": "Gezeichnet als",
   "bodyView.drawn.skin": "Körper",
   "bodyView.drawn.skeleton": "Strichfigur",

@@ -1,11 +1,16 @@
-/** The floor of the scene: lines at regular distances in metres, labelled along two edges. */
+/**
+ * The floor of the scene: lines at regular distances in metres, labelled along the two edges that
+ * are nearest to the camera, so that nobody stands between it and the labels.
+ */
 import {
   BufferAttribute,
   BufferGeometry,
+  type Camera,
   CanvasTexture,
   Group,
   LineBasicMaterial,
   LineSegments,
+  type PerspectiveCamera,
   Sprite,
   SpriteMaterial,
   Vector3,
@@ -26,14 +31,55 @@ export function makeFloor(plan: FloorPlan, palette: StagePalette): Group {
     for (let cell = 1; cell <= cells - axis; cell += every) {
       const value = first + cell * plan.step;
       const text = `${tidy(value)} m`;
-      const margin = 0.22 * plan.step;
+      const margin = (axis === 0 ? 0.22 : 0.31) * plan.step;
       const label = label3d(text, palette);
-      if (axis === 0) label.position.set(value, 0, plan.max[1] + margin);
-      else label.position.set(plan.max[0] + 1.4 * margin, 0, value);
+      // Where the near edge is outside of the picture, a label on the far one is read over the legs.
+      label.material.depthTest = false;
+      const across = axis === 0 ? 1 : 0;
+      const edges = [plan.min[across] - margin, plan.max[across] + margin] as const;
+      label.userData = { axis, value, edges } satisfies EdgeLabel;
       floor.add(label);
     }
   }
   return floor;
+}
+
+interface EdgeLabel {
+  /** The axis along which it stands: 0 for x, 1 for z. */
+  readonly axis: 0 | 1;
+  readonly value: number;
+  /** Where the two edges are on the other axis. */
+  readonly edges: readonly [low: number, high: number];
+}
+
+/** Stand each label on the edge nearer to the camera, or on the other one if it is cut off there. */
+export function turnLabels(floor: Group, camera: PerspectiveCamera): void {
+  camera.updateMatrixWorld();
+  const { x, z } = camera.position;
+  for (const label of floor.children) {
+    if (!(label instanceof Sprite)) continue;
+    const { axis, value, edges } = label.userData as EdgeLabel;
+    const [low, high] = edges;
+    const isHigh = (axis === 0 ? z : x) > (low + high) / 2;
+    for (const edge of isHigh ? [high, low] : [low, high]) {
+      if (axis === 0) label.position.set(value, 0, edge);
+      else label.position.set(edge, 0, value);
+      if (isWhole(label, camera, AT.copy(label.position))) break;
+    }
+  }
+}
+
+const AT = new Vector3();
+
+/** Whether a label at a place in the world is not cut by the picture's edge; `at` is changed. */
+function isWhole({ scale }: Sprite, camera: Camera, at: Vector3): boolean {
+  const [across = 1, , , , , upwards = 1] = camera.projectionMatrix.elements;
+  at.project(camera);
+  return (
+    Math.abs(at.x) + (scale.x / 2) * across < 1 &&
+    Math.abs(at.y) + (scale.y / 2) * upwards < 1 &&
+    at.z < 1
+  );
 }
 
 export function disposeFloor(floor: Group): void {
@@ -105,13 +151,9 @@ export function label3d(text: string, palette: StagePalette): Sprite {
   );
   const width = (WIDTH * canvas.width) / NARROWEST_PX;
   label.scale.set(width, HEIGHT, 1);
-  const at = new Vector3();
   label.onBeforeRender = (_renderer, _scene, camera) => {
-    const [across = 1, , , , , upwards = 1] = camera.projectionMatrix.elements;
-    at.setFromMatrixPosition(label.matrixWorld).project(camera);
-    const isWhole =
-      Math.abs(at.x) + (width / 2) * across < 1 && Math.abs(at.y) + (HEIGHT / 2) * upwards < 1;
-    label.material.opacity = isWhole ? 1 : 0;
+    const at = AT.setFromMatrixPosition(label.matrixWorld);
+    label.material.opacity = isWhole(label, camera, at) ? 1 : 0;
   };
   return label;
 }

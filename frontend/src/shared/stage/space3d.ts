@@ -18,7 +18,7 @@ import { Blocks3d } from "./blocks3d";
 import { Body3d } from "./body3d";
 import type { Block, BlockTones, Figure, StagePalette } from "./figure";
 import type { FloorPlan } from "./floor";
-import { disposeFloor, makeFloor } from "./floor3d";
+import { disposeFloor, makeFloor, turnLabels } from "./floor3d";
 import { SkinnedBody3d } from "./skin/skinnedBody3d";
 
 /** A figure in the scene: a skeleton, or the body that it wears. */
@@ -111,6 +111,7 @@ export abstract class Space3d {
   #draw(): void {
     cancelAnimationFrame(this.#frameRequest);
     this.#frameRequest = 0;
+    if (this.#floor !== null) turnLabels(this.#floor, this.camera);
     this.renderer.render(this.scene, this.camera);
     this.drawn();
   }

@@ -52,7 +52,15 @@ export class BodyError extends Error {
   override readonly name = "BodyError";
 }
 
+/** Pictures of the file that are not drawn: their parts are plain. */
+export interface MissingPictures {
+  readonly count: number;
+  /** The decoder of compressed pictures (KTX2) could not be loaded; another try may. */
+  readonly isDecoderMissing: boolean;
+}
+
 export class BodyModel {
+  missing: MissingPictures = { count: 0, isDecoderMissing: false };
   readonly nodes: readonly BodyNode[];
   readonly skins: readonly BodySkin[];
   readonly meshes: readonly BodyMesh[];

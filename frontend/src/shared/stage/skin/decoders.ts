@@ -5,6 +5,7 @@
 import { LoadingManager } from "three";
 import { DRACOLoader } from "three/addons/loaders/DRACOLoader.js";
 import { KTX2Loader } from "three/addons/loaders/KTX2Loader.js";
+import { fetchPart, reportUnloaded } from "../../ui/unloaded";
 import codeWorker from "./codeWorker?worker&url";
 import type { MeshoptRequest, MeshoptResult } from "./meshoptWorker";
 import meshoptWorker from "./meshoptWorker?worker&url";
@@ -22,31 +23,55 @@ interface WithWorkers {
   workerSourceURL: string;
 }
 
+/**
+ * Whether the worker can be loaded: three waits for an answer of a worker that never starts. What
+ * was fetched is in the browser's cache afterwards.
+ */
+async function checked(worker: string): Promise<void> {
+  if (!import.meta.env.DEV) await fetchPart(worker);
+}
+
+/** Have the page say why a decoder could not be loaded. */
+const reported = (error: unknown): never => {
+  reportUnloaded(error);
+  throw error;
+};
+
 class Draco extends DRACOLoader {
   /** Load the decoder; called by three before its first worker. */
   _initDecoder(): Promise<void> {
     const self = this as unknown as WithWorkers & { readonly decoderPending: Promise<void> | null };
     if (self.decoderPending !== null) return self.decoderPending;
     const above = DRACOLoader.prototype as unknown as { _initDecoder(): Promise<void> };
-    const pending = above._initDecoder.call(this).then(() => {
+    const loaded = Promise.all([above._initDecoder.call(this), checked(codeWorker)]);
+    const pending = loaded.then(() => {
       self.workerSourceURL = running(codeWorker, self.workerSourceURL);
-    });
+    }, reported);
     (this as unknown as { decoderPending: Promise<void> }).decoderPending = pending;
     return pending;
   }
 }
 
 class Ktx2 extends KTX2Loader {
+  isMissing = false;
   #ready: Promise<void> | null = null;
 
   override init(): Promise<void> {
+    this.#ready ??= this.#load();
+    return this.#ready;
+  }
+
+  async #load(): Promise<void> {
     const self = this as unknown as WithWorkers;
     const above = KTX2Loader.prototype as unknown as { init(): Promise<void> };
-    this.#ready ??= above.init.call(this).then(() => {
-      // Workers are created later, from this address.
-      self.workerSourceURL = running(textureWorker, self.workerSourceURL);
-    });
-    return this.#ready;
+    try {
+      await Promise.all([above.init.call(this), checked(textureWorker)]);
+    } catch (error) {
+      this.isMissing = true;
+      reported(error);
+    }
+    // Workers are created later, from this address.
+    self.workerSourceURL = running(textureWorker, self.workerSourceURL);
   }
 
   /** Load a picture in the file; the page's policy lets nobody fetch a `data:` address. */
@@ -103,6 +128,8 @@ class Meshopt {
       this.#waiting.delete(data.id);
     };
     worker.onerror = ({ message }) => {
+      // Without words it is the browser that could not load the worker.
+      if (!message) reportUnloaded(null);
       const error = message || "The decoder of compressed meshes could not be started.";
       for (const [id, resolve] of this.#waiting) resolve({ id, decoded: null, error });
       this.#waiting.clear();
@@ -117,6 +144,8 @@ export interface Decoders {
   readonly draco: DRACOLoader;
   readonly ktx2: KTX2Loader;
   readonly meshopt: Meshopt;
+  /** Whether the decoder of textures was needed and could not be loaded. */
+  readonly isTextureDecoderMissing: () => boolean;
   readonly dispose: () => void;
 }
 
@@ -124,7 +153,8 @@ export interface Decoders {
 export function makeDecoders(): Decoders {
   const manager = new LoadingManager();
   const draco = new Draco(manager).setWorkerLimit(1);
-  const ktx2 = new Ktx2(manager).setWorkerLimit(1).detectSupport(renderSupport() as never);
+  const ktx2 = new Ktx2(manager);
+  ktx2.setWorkerLimit(1).detectSupport(renderSupport() as never);
   const meshopt = new Meshopt();
   const dispose = () => {
     for (const one of [draco, ktx2]) {
@@ -134,7 +164,8 @@ export function makeDecoders(): Decoders {
     }
     meshopt.dispose();
   };
-  return { manager, draco, ktx2, meshopt, dispose };
+  const isTextureDecoderMissing = () => ktx2.isMissing;
+  return { manager, draco, ktx2, meshopt, isTextureDecoderMissing, dispose };
 }
 
 /** Which compressed textures the browser draws, in the form in which KTX2Loader asks for it. */

@@ -26,8 +26,14 @@ export function takeBody(hash: string): {
   if (one === undefined) {
     one = { loading: load(hash), users: 0, timer: undefined };
     held.set(hash, one);
-    // A body that could not be loaded is tried again by the next one who wants it.
-    one.loading.catch(() => held.delete(hash));
+    const fresh = one;
+    // A body that could not be loaded, or not as a whole, is tried again by the next who wants it.
+    const forget = () => {
+      if (held.get(hash) === fresh) held.delete(hash);
+    };
+    fresh.loading.then(({ missing }) => {
+      if (missing.isDecoderMissing) forget();
+    }, forget);
   }
   const taken = one;
   clearTimeout(taken.timer);

@@ -14,15 +14,19 @@ export async function readBody(file: ArrayBuffer, binding: BodyBinding): Promise
       .setDRACOLoader(decoders.draco)
       .setKTX2Loader(decoders.ktx2)
       .setMeshoptDecoder(decoders.meshopt as never);
+    const failed = new Set<number>();
     loader.register((parser) => {
       keepToFile(parser);
+      noteFailures(parser, failed);
       return { name: "REEMBODY_one_file" };
     });
     if (namesVrm(file)) {
       const { VRMLoaderPlugin } = await import("@pixiv/three-vrm");
       loader.register((parser) => new VRMLoaderPlugin(parser));
     }
-    return bodyOfGltf(await loader.parseAsync(file, ""), binding);
+    const body = bodyOfGltf(await loader.parseAsync(file, ""), binding);
+    body.missing = { count: failed.size, isDecoderMissing: decoders.isTextureDecoderMissing() };
+    return body;
   } finally {
     decoders.dispose();
   }
@@ -45,6 +49,22 @@ function keepToFile(parser: GLTFParser): void {
     },
   }) as typeof own.fileLoader;
 }
+
+/** Three leaves pictures out that it cannot read, without a word: note them by their index. */
+function noteFailures(parser: GLTFParser, failed: Set<number>): void {
+  const own = parser as unknown as { loadImageSource: LoadImage };
+  const load = own.loadImageSource.bind(parser);
+  own.loadImageSource = async (index, loader) => {
+    try {
+      return await load(index, loader);
+    } catch (error) {
+      failed.add(index);
+      throw error;
+    }
+  };
+}
+
+type LoadImage = (index: number, loader: unknown) => Promise<unknown>;
 
 /** An address without a picture, for those that lead out of the file. */
 const NO_PICTURE = "data:,";
