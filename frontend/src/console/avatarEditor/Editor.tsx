@@ -90,6 +90,7 @@ export function AvatarEditor(props: AvatarEditorProps): JSX.Element {
   const bodies = useQuery(bodiesQuery);
   const neutral = bodies.data?.humanoids.find(({ name }) => name === NEUTRAL);
   const bodyHash = configuration.humanoid ?? neutral?.content_hash ?? null;
+  const newestFile = useRef<File | null>(null);
   const show = async (wished: View) => {
     setSelected(NO_AXES);
     // People who only read convert nothing, so they lose nothing.
@@ -106,10 +107,14 @@ export function AvatarEditor(props: AvatarEditorProps): JSX.Element {
   };
   const openFile = async (chosenFile: File) => {
     work.dismiss();
+    newestFile.current = chosenFile;
+    // What is found out about a file counts only until another one is chosen.
+    const isNewest = () => newestFile.current === chosenFile;
     try {
-      setFile(await readAvatarFile(chosenFile, texts));
+      const read = await readAvatarFile(chosenFile, texts);
+      if (isNewest()) setFile(read);
     } catch (failure) {
-      work.fail(failure);
+      if (isNewest()) work.fail(failure);
     }
   };
   const follow = async (theirs: AvatarView): Promise<boolean> => {
