@@ -5,9 +5,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from app.database import open_database
+from tests.e2e.people import PATIENCE_MS
 from tests.e2e.telemetry_bench import Headset, Mode, Wear
 from tests.features.lab import ok
 from tests.features.record.headset.site import Site
@@ -27,6 +28,8 @@ from tests.support.shared_run import once, run_folder
 
 SCREENSHOTS_VARIABLE = "REEMBODY_SCREENSHOTS"
 HERE = Path(__file__).resolve().parent
+# What is expected is waited for on a slow machine, too: no browser test judges speed.
+expect.set_options(timeout=PATIENCE_MS)
 
 
 @pytest.hookimpl(tryfirst=True)

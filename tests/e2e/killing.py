@@ -9,7 +9,7 @@ from pathlib import Path
 import psutil
 from playwright.sync_api import Browser, BrowserContext, Error, Page
 
-from tests.support.browser import ARGUMENTS
+from tests.support.browser import ARGUMENTS, PATIENCE_MS
 from tests.support.chromium_binary import find_chromium
 
 
@@ -29,6 +29,7 @@ def kept_profile(browser: Browser, profile: Path) -> Iterator[BrowserContext]:
         args=list(ARGUMENTS),
         env={**os.environ, **chromium.environment},
     )
+    context.set_default_timeout(PATIENCE_MS)
     try:
         yield context
     finally:

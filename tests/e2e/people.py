@@ -5,9 +5,10 @@ from collections.abc import Mapping
 
 from playwright.sync_api import Page, expect
 
+from tests.support import browser
 from tests.support.server import ADMIN_PASSWORD
 
-PATIENCE_MS = 60_000
+PATIENCE_MS = browser.PATIENCE_MS
 PICTURE_HIDDEN = "localStorage.setItem('reembody.cockpit.live', 'false')"
 """For consoles without the live picture: software rendering would use a whole core."""
 

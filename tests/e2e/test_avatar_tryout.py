@@ -14,8 +14,6 @@ from tests.support.browser import ContextFactory
 from tests.support.server import LiveServer
 from tests.support.tryout_page import figure, opened_tryout
 
-expect.set_options(timeout=PATIENCE_MS)
-
 
 def test_a_configuration_is_tried_before_it_is_saved(
     running_server: LiveServer,

@@ -25,7 +25,8 @@ def test_a_body_is_uploaded_checked_and_named(
 
     A model of a dog is refused with what it lacks. The model's texture is a KTX2 picture.
     """
-    page_watch.allow(r"status of 422")
+    for message in ("status of 422", "basis_transcoder"):
+        page_watch.allow(message)
     page = page_factory((1180, 820))
     Experimenter(page, running_server.url).log_in()
     # A texture that could not be read would be an error of the page.
@@ -44,6 +45,7 @@ def test_a_body_is_uploaded_checked_and_named(
     checks = page.get_by_role("list", name="Checks")
     expect(checks).to_contain_text("8 of 10 fingers")
     expect(page.locator("[data-way=space]")).to_be_visible(timeout=PATIENCE_MS)
+    _is_told_without_the_decoder_of_its_textures(page)
     name = page.get_by_label("Name for studies")
     expect(name).to_have_value("worn-once")
     name.fill("Worn Once")
@@ -70,3 +72,17 @@ def test_a_body_is_uploaded_checked_and_named(
     expect(page.locator("[data-way=space]")).to_be_visible(timeout=PATIENCE_MS)
     expect(page.get_by_text("Its author lets everybody wear it.")).to_be_visible()
     screenshot(page, "body")
+
+
+def _is_told_without_the_decoder_of_its_textures(page: Page) -> None:
+    """A body that is grey because a decoder could not be loaded says so; another try loads it."""
+    page.route("**/basis_transcoder-*", lambda route: route.abort())
+    page.reload()
+    told = page.get_by_text("Drawn without one of its textures")
+    expect(told).to_be_visible()
+    expect(page.get_by_role("alert")).to_contain_text("A part of this page could not be loaded")
+    page.get_by_role("button", name="Later").click()
+    page.unroute_all()
+    page.get_by_role("button", name="Try again").click()
+    expect(told).to_have_count(0)
+    expect(page.locator("[data-way=space]")).to_be_visible()

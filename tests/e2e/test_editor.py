@@ -6,13 +6,12 @@ import pytest
 import yaml
 from playwright.sync_api import Page, expect
 
-from tests.e2e.people import PATIENCE_MS, Experimenter
+from tests.e2e.people import Experimenter
 from tests.features.design.instruments.test_library import OWN
 from tests.support.browser import ColorScheme, in_both_schemes
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 from tests.support.traffic import Traffic
 
-expect.set_options(timeout=PATIENCE_MS)
 STUDY = "reembodiment-latency"
 
 

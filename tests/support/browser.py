@@ -22,6 +22,8 @@ from tests.support.unit_tests import needs
 ColorScheme = Literal["light", "dark"]
 Motion = Literal["reduce", "no-preference"]
 DESKTOP = (1280, 800)
+PATIENCE_MS = 60_000
+"""How long a page may take for what is asked of it on a slow machine; no test judges its speed."""
 ARGUMENTS = (
     # Chromium's own sandbox does not work for root, nor inside most containers.
     "--no-sandbox",
@@ -119,6 +121,7 @@ class ContextFactory:
             reduced_motion=motion,
             **options,
         )
+        context.set_default_timeout(PATIENCE_MS)
         self.watch.attach(context)
         return context
 
@@ -156,7 +159,7 @@ def take_screenshot(page: Page, folder: Path, name: str) -> Path:
 # nothing has moved for a few frames. A paused or endlessly repeated animation would never end, so
 # the wait is limited.
 MOVEMENTS_DONE = """async () => {
-    const until = performance.now() + 3000;
+    const until = performance.now() + 30000;
     let calm = 0;
     while (calm < 4 && performance.now() < until) {
         await new Promise((next) => requestAnimationFrame(next));

@@ -25,7 +25,7 @@ from tests.support.bundle import bundled_script
 Json = dict[str, Any]
 FRAME_RATE_HZ = 90
 JOURNEY = "vr/testing/journey.ts"
-PATIENCE_MS = 20_000
+PATIENCE_MS = 60_000
 ENDED = ("completed", "aborted", "withdrawn")
 OVERTAKEN = ("stale", "not_now")
 """Error codes of a command that came after the headset's own change."""

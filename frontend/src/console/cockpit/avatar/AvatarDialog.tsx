@@ -18,7 +18,7 @@ import type { AvatarChanges, AvatarChoices, SessionView } from "@shared/api/type
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
-import { type JSX, type ReactNode, useState } from "react";
+import { type JSX, type KeyboardEvent, type ReactNode, useState } from "react";
 import { axisName, isFound } from "../../avatarChanges/axes";
 import { groupName, layerName } from "../../avatarChanges/words";
 import { type Key, useTexts } from "../../i18n";
@@ -252,11 +252,26 @@ function GroupSelect({ groups, value, onChange }: GroupSelectProps): JSX.Element
       searchable
       selectFirstOptionOnChange
       allowDeselect={false}
+      onKeyDownCapture={chooseShown}
       data={groups.map((one) => ({ value: one, label: groupName(texts, one) }))}
       value={value === "" ? null : value}
       onChange={(one) => one !== null && onChange(one)}
     />
   );
+}
+
+/**
+ * Enter takes the option that is shown as chosen. Mantine forgets it by a timer that it sets when
+ * the list opens, so that a quick Enter would send the form without it.
+ */
+function chooseShown(event: KeyboardEvent<HTMLInputElement>): void {
+  if (event.key !== "Enter" || event.nativeEvent.isComposing) return;
+  const list = document.getElementById(event.currentTarget.getAttribute("aria-controls") ?? "");
+  const shown = list?.querySelector<HTMLElement>("[data-combobox-selected]");
+  if (shown == null) return;
+  event.preventDefault();
+  event.stopPropagation();
+  shown.click();
 }
 
 function Casts({ choices, changes, set }: PartProps): JSX.Element {
