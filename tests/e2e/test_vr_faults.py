@@ -302,3 +302,56 @@ def test_a_phase_outlives_what_happens_to_its_headset_page_network_and_server(
 def phase_of(view: Json) -> Json:
     """Return the first phase at the boxes."""
     return next(one for one in view["phases"] if one["kind"] == "task")
+
+
+RELOADS = "headset-reloads"
+
+
+def test_a_page_is_loaded_again_in_preparation_walk_back_and_freeze(
+    headset_site: Site, new_context: ContextFactory, page_watch: PageWatch, tmp_path: Path
+) -> None:
+    """A foot task whose page is loaded again while its clock stands goes on there, to its end."""
+    page_watch.allow(r"WebSocket connection to .* failed")
+    site, operator = headset_site, headset_site.operator
+    text = short_study().replace(f"key: {STUDY}", f"key: {RELOADS}", 1)
+    ok(operator.post("/api/studies", json={"yaml": text}))
+    fields = {"kind": "simulated", "language": "en", "time_scale": 20.0}
+    view = ok(operator.post(f"/api/studies/{RELOADS}/sessions", json=fields))
+    session_id = str(view["id"])
+    path = f"/api/sessions/{session_id}/pairings"
+    code = str(ok(operator.post(path, json={"device": "headset"}))["code"])
+    worn_page = WornHeadset(new_context(), journey_script(tmp_path), site.server.url)
+    visit = Visit(operator, session_id, worn_page, make_person(np.random.default_rng(7), None))
+    worn_page.open(code)
+    put_on(visit)
+    steps = {one["key"]: one for one in view["steps"]}
+    site.skip_to(session_id, next(key for key in steps if "materialise" in key))
+    foot = next(key for key, one in steps.items() if one.get("limb") == "foot")
+
+    def in_foot_task(now: Json) -> bool:
+        return bool(now["current"]) and now["steps"][now["current"]["index"]]["key"] == foot
+
+    visit.perform(lambda now: bool(now["current"]) and _kind(now) == "task")
+    while not in_foot_task(now := visit.view()):
+        visit.command(now, "skip", reason="not in this test")
+    for status in ("preparing", "walk_back", "freezing"):
+        found = visit.perform(
+            lambda now, status=status: not in_foot_task(now) or now["current"]["status"] == status
+        )
+        assert in_foot_task(found), (status, found["phases"][-1])
+        counted_s = found["current"]["active_s"]
+        worn_page.page.reload()
+        put_on(visit)
+        now = visit.view()
+        assert in_foot_task(now), status
+        assert now["current"]["active_s"] == pytest.approx(counted_s, abs=10 * FRAME_S), status
+    found = visit.perform(lambda now: not in_foot_task(now))
+    (phase,) = (one for one in found["phases"] if one["limb"] == "foot")
+    assert (phase["status"], phase["active_s"]) == ("done", pytest.approx(ACTIVE_S, abs=1e-9))
+    assert phase["completions"] >= 1
+    site.command(session_id, "abort", reason="The test has seen enough.")
+
+
+def _kind(view: Json) -> str:
+    """Return the kind of the current step."""
+    return str(view["steps"][view["current"]["index"]]["kind"])

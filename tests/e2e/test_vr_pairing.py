@@ -50,3 +50,54 @@ def test_a_link_pairs_one_browser_and_a_second_headset_replaces_the_first(
         timeout=PATIENCE_MS
     )
     is_paired(second)
+
+
+FOREIGN = "is nobody's pairing"
+KEY = "reembody.vr.pairing"
+
+
+def test_a_token_that_is_not_this_headsets_leads_back_to_pairing(
+    headset_site: Site, new_context: ContextFactory, page_watch: PageWatch
+) -> None:
+    """A token of an operator, of a tablet, of a headset that was replaced, or none at all.
+
+    Each is refused without a word to the session, and forgotten; a token of another session opens
+    that one, and a session that has ended says so.
+    """
+    page_watch.allow(r"status of 4\d\d|WebSocket connection to .* failed")
+    site, url = headset_site, headset_site.server.url
+    session_id, other_id = site.join(kind="test"), site.join(kind="test")
+    replaced = site.token(session_id)
+    token = site.token(session_id)
+    codes = f"/api/sessions/{session_id}/pairings"
+    code = ok(site.operator.post(codes, json={"device": "tablet"}))["code"]
+    with site.server.client() as tablet:
+        ok(tablet.post("/api/devices/pair", json={"code": code}))
+        (tablets,) = tablet.cookies.values()
+    operators = site.operator.cookies["reembody_login"]
+    page = new_context().new_page()
+    page.goto(f"{url}/vr")
+
+    def open_with(held: str) -> None:
+        pairing = {"sessionId": session_id, "token": held}
+        page.evaluate(f"(one) => localStorage.setItem('{KEY}', JSON.stringify(one))", pairing)
+        page.reload()
+
+    for held in (operators, tablets, replaced, "", FOREIGN, "x" * 500):
+        open_with(held)
+        expect(page.get_by_text("This headset was disconnected")).to_be_visible()
+        expect(page.get_by_role("heading", name="Connect this headset")).to_be_visible()
+        assert page.evaluate(f"localStorage.getItem('{KEY}')") is None, held
+    headsets = [one for one in site.view(session_id)["devices"] if one["kind"] == "headset"]
+    assert [one["connected"] for one in headsets] == [False]
+
+    act = page.get_by_role("button", name="Act on this screen")
+    open_with(site.token(other_id))
+    expect(act).to_be_enabled()
+    open_with(token)
+    expect(act).to_be_enabled()
+    site.command(session_id, "start", reason="in this test")
+    site.command(session_id, "abort", reason="seen enough")
+    expect(page.get_by_role("heading", name="The session has ended")).to_be_visible()
+    page.reload()
+    expect(page.get_by_role("heading", name="The session has ended")).to_be_visible()

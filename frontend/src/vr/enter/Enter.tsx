@@ -171,7 +171,12 @@ interface VisitPageProps {
 }
 
 /** Failures of the connection after which only another pairing helps. */
-const UNPAIRED = new Set(["closed_4401", "not_signed_in"]);
+const UNPAIRED = new Set([
+  "closed_4401",
+  "not_signed_in",
+  // The socket cannot even be opened: the address is this page's own, so it is the token.
+  "address",
+]);
 
 function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
   const { t, language, setLanguage } = useTexts();
@@ -256,7 +261,10 @@ function VisitNotices({ visit }: { readonly visit: VisitState }): JSX.Element {
   const { failure, problem, isReady, isConnected, vr, isOver, isUnloaded } = visit;
   return (
     <>
-      {failure !== null && (
+      {failure?.code === "foreign_journal" && (
+        <Notice tone="bad" title={t("enter.foreign")} remedy={t("enter.foreign.remedy")} />
+      )}
+      {failure !== null && failure.code !== "foreign_journal" && (
         <Notice tone="bad" title={t("enter.stopped")} remedy={failure.remedy}>
           {failure.message}
         </Notice>

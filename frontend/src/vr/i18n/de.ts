@@ -24,6 +24,9 @@ export const de: Readonly<Record<keyof typeof en, string>> = {
   "enter.overBody": "Sie können die VR-Brille abnehmen. Vielen Dank für Ihre Teilnahme.",
   "enter.failed": "VR konnte nicht gestartet werden",
   "enter.stopped": "Diese VR-Brille hat angehalten",
+  "enter.foreign": "Dieses Headset hat noch Aufzeichnungen einer anderen Sitzung",
+  "enter.foreign.remedy":
+    "Sie sind noch nicht beim Studienrechner. Koppeln Sie das Headset zuerst wieder mit jener Sitzung: Sie werden gesendet, sobald es verbunden ist. Verwenden Sie danach den Code dieser Sitzung.",
   "enter.ended": "VR wurde geschlossen. Die Sitzung wartet, bis Sie zurückkehren.",
   "enter.disconnect": "Anderen Code verwenden",
   "pair.title": "Diese VR-Brille verbinden",

@@ -22,6 +22,9 @@ export const en = {
   "enter.overBody": "You can take the headset off. Thank you for taking part.",
   "enter.failed": "VR could not be started",
   "enter.stopped": "This headset has stopped",
+  "enter.foreign": "This headset still keeps recordings of another session",
+  "enter.foreign.remedy":
+    "They have not reached the study computer. Pair the headset with that session again first: they are sent as soon as it is connected. Then use the code of this session.",
   "enter.ended": "VR was closed. The session waits until you return.",
   "enter.disconnect": "Use another code",
   "pair.title": "Connect this headset",
