@@ -268,14 +268,35 @@ def ktx2_picture(side_px: int, colour: tuple[int, int, int]) -> bytes:
         struct.pack("<HBBIII", 8 * at, 7, channel, 0, 0, 255)
         for at, channel in enumerate((0, 1, 2, 15 | 0x10))
     )
+    srgb, rgb_colours, bytes_of_a_pixel = 43, 1, 4
+    return _ktx2(side_px, srgb, (rgb_colours, 0, bytes_of_a_pixel), samples, pixels)
+
+
+def uastc_picture(side_px: int) -> bytes:
+    """Return a black KTX2 picture that is compressed as UASTC, which only a transcoder can read.
+
+    Source: Khronos Data Format 1.3, 5.6.15: blocks of 4 x 4 pixels, 128 bits each.
+    """
+    blocks = bytes(16 * (side_px // 4) ** 2)
+    uastc, up_to_3, bytes_of_a_block = 166, 3, 16
+    sample = struct.pack("<HBBIII", 0, 127, 0, 0, 0, 2**32 - 1)
+    return _ktx2(side_px, 0, (uastc, up_to_3, bytes_of_a_block), sample, blocks)
+
+
+def _ktx2(
+    side_px: int, vk_format: int, layout: tuple[int, int, int], samples: bytes, pixels: bytes
+) -> bytes:
+    """Return a KTX2 file of one level. `layout`: colour model, block side less 1, block bytes."""
+    model, side, size = layout
     block = struct.pack(
-        "<IHHBBBB4B8B", 0, 2, 24 + len(samples), 1, 1, 2, 0, *(0,) * 4, 4, *(0,) * 7
+        *("<IHHBBBB4B8B", 0, 2, 24 + len(samples), model, 1, 2, 0),
+        *(side, side, 0, 0, size, *(0,) * 7),
     )
     descriptor = struct.pack("<I", 4 + len(block) + len(samples)) + block + samples
-    srgb, head = 43, 80 + 24
+    head = 80 + 24
     return (
         b"\xabKTX 20\xbb\r\n\x1a\n"
-        + struct.pack("<9I", srgb, 1, side_px, side_px, 0, 0, 1, 1, 0)
+        + struct.pack("<9I", vk_format, 1, side_px, side_px, 0, 0, 1, 1, 0)
         + struct.pack("<4I2Q", head, len(descriptor), 0, 0, 0, 0)
         + struct.pack("<3Q", head + len(descriptor), len(pixels), len(pixels))
         + descriptor
@@ -285,7 +306,16 @@ def ktx2_picture(side_px: int, colour: tuple[int, int, int]) -> bytes:
 
 def with_ktx2(document: dict[str, Any]) -> None:
     """Give a model's skin a KTX2 texture of one colour; its points lie at one place in it."""
-    picture = base64.b64encode(ktx2_picture(16, (200, 30, 120))).decode()
+    _with_texture(document, ktx2_picture(16, (200, 30, 120)))
+
+
+def with_uastc(document: dict[str, Any]) -> None:
+    """Give a model's skin a KTX2 texture that must be transcoded."""
+    _with_texture(document, uastc_picture(16))
+
+
+def _with_texture(document: dict[str, Any], ktx2: bytes) -> None:
+    picture = base64.b64encode(ktx2).decode()
     document["images"] = [{"uri": f"data:image/ktx2;base64,{picture}", "mimeType": "image/ktx2"}]
     document["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]
     document["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
