@@ -334,9 +334,11 @@ def test_a_page_is_loaded_again_in_preparation_walk_back_and_freeze(
     visit.perform(lambda now: bool(now["current"]) and _kind(now) == "task")
     while not in_foot_task(now := visit.view()):
         visit.command(now, "skip", reason="not in this test")
+    wanted = [""]
     for status in ("preparing", "walk_back", "freezing"):
+        wanted[0] = status
         found = visit.perform(
-            lambda now, status=status: not in_foot_task(now) or now["current"]["status"] == status
+            lambda now: not in_foot_task(now) or now["current"]["status"] == wanted[0]
         )
         assert in_foot_task(found), (status, found["phases"][-1])
         counted_s = found["current"]["active_s"]
