@@ -35,6 +35,7 @@ export function makeFloor(plan: FloorPlan, palette: StagePalette): Group {
       const label = label3d(text, palette);
       // Where the near edge is outside of the picture, a label on the far one is read over the legs.
       label.material.depthTest = false;
+      label.renderOrder = 1;
       const across = axis === 0 ? 1 : 0;
       const edges = [plan.min[across] - margin, plan.max[across] + margin] as const;
       label.userData = { axis, value, edges } satisfies EdgeLabel;
