@@ -26,6 +26,17 @@ def compiled(function: _F) -> _F:
     return _cached(function, nogil=True)
 
 
+def compiled_inside(function: _F) -> _F:
+    """Compile as `compiled` does a function of another module, for calls from compiled code.
+
+    It is not cached by itself, but as a part of its callers: Numba's cache does not tell a function
+    that is compiled in two ways apart, and would load the fused form of a quaternion product here.
+    """
+    import numba
+
+    return cast("_F", numba.njit(nogil=True, error_model="numpy")(function))
+
+
 def compiled_fused(function: _F) -> _F:
     """Compile with fused multiply-add allowed."""
     return _cached(function, fastmath={"contract"})

@@ -1,10 +1,8 @@
 """The background movement of a person, which continues while the limbs do a task."""
 
-from typing import cast
-
 import numpy as np
 
-from app.science.rotations import FloatArray, Quaternion, Vector
+from app.science.rotations import FloatArray, Vector
 from app.science.simulation.goal import SimulationError
 from app.science.skeleton import JOINT_COUNT, JOINT_INDEX, Movement, mean_rotations
 
@@ -29,13 +27,14 @@ class BaseMovement:
         # The first frame is appended, in the last one's hemisphere, to interpolate over the seam.
         seam = q[0] * np.where(np.einsum("ji,ji->j", q[0], q[-1]) < 0.0, -1.0, 1.0)[:, np.newaxis]
         self._rotations = np.concatenate((q, seam[np.newaxis]))
-        self._roots = np.concatenate((root, root[:1]))
+        # As plain numbers, since one row is read at a time.
+        self._roots: list[list[float]] = [*root.tolist(), root[0].tolist()]
         gains = np.full((JOINT_COUNT, 1), _TASK_GAIN_ELSE)
         for name, gain in _TASK_GAIN.items():
             gains[JOINT_INDEX[name]] = gain
         gains[_LEG_JOINTS] = 0.0
         self._gains, self._rest = gains, (1.0 - gains) * mean
-        self._middle = root.mean(axis=0)
+        self._middle: list[float] = root.mean(axis=0).tolist()
 
     @property
     def offset_s(self) -> float:
@@ -56,23 +55,26 @@ class BaseMovement:
     def root(self, time_s: float) -> Vector:
         """Return the position of the hips, x and z around the origin, as recorded."""
         frame, share = self._frame_at(time_s)
-        here, after = self._roots[frame], self._roots[frame + 1]
-        return cast("Vector", tuple((here * (1.0 - share) + after * share).tolist()))
+        x, y, z = self._roots[frame]
+        to_x, to_y, to_z = self._roots[frame + 1]
+        rest = 1.0 - share
+        return x * rest + to_x * share, y * rest + to_y * share, z * rest + to_z * share
 
     def sway(self, time_s: float) -> tuple[float, float]:
         """Return the damped sway of the hips during a task: x and z in metres."""
         x, _, z = self.root(time_s)
-        return _SWAY_GAIN * (x - float(self._middle[0])), _SWAY_GAIN * (z - float(self._middle[2]))
+        return _SWAY_GAIN * (x - self._middle[0]), _SWAY_GAIN * (z - self._middle[2])
 
-    def whole(self, time_s: float) -> list[Quaternion]:
-        """Return the 22 local rotations as recorded."""
+    def whole(self, time_s: float) -> FloatArray:
+        """Return the local rotations (22, 4) as recorded."""
         return _unit_rows(self._blend(time_s))
 
-    def damped(self, time_s: float) -> list[Quaternion]:
-        """Return the 22 local rotations, damped towards their mean; the legs are at their mean."""
+    def damped(self, time_s: float) -> FloatArray:
+        """Return the local rotations (22, 4), damped towards their mean; those of legs are it."""
         return _unit_rows(self._rest + self._gains * self._blend(time_s))
 
 
-def _unit_rows(rows: FloatArray) -> list[Quaternion]:
+def _unit_rows(rows: FloatArray) -> FloatArray:
     length = np.sqrt(np.einsum("ji,ji->j", rows, rows))
-    return cast("list[Quaternion]", (rows / length[:, np.newaxis]).tolist())
+    unit: FloatArray = rows / length[:, np.newaxis]
+    return unit

@@ -23,7 +23,7 @@ from typing import cast
 
 import numpy as np
 
-from app.science.rotations import Quaternion, Vector, q_blend, rotate
+from app.science.rotations import FloatArray, Vector, rotate
 from app.science.simulation.aiming import Aim
 from app.science.simulation.base import BaseMovement
 from app.science.simulation.goal import Goal, GoalKind, SimulationError
@@ -75,7 +75,7 @@ class SimulatedParticipant:
         self._goal: Goal | None = None
         self._time_s: float | None = None
         self._pose: Pose | None = None
-        self._local: list[Quaternion] | None = None
+        self._local: FloatArray | None = None
         self._plan: tuple[Hand, ReachPlan] | None = None
         self._task = 0.0
 
@@ -139,7 +139,7 @@ class SimulatedParticipant:
         if self._local is not None:
             local = limit_turn_rate(self._local, local, time_s - before)
         self._local = local
-        self._pose = Pose(np.array(root), np.array(local))
+        self._pose = Pose(np.array(root), local)
         return self._pose
 
     def _assign_goal(self, goal: Goal | None, time_s: float) -> None:
@@ -167,13 +167,13 @@ class SimulatedParticipant:
         if not reaching:
             self._placement.stand_upright()
 
-    def _roaming(self, time_s: float) -> tuple[Vector, list[Quaternion]]:
+    def _roaming(self, time_s: float) -> tuple[Vector, FloatArray]:
         """Return the base movement, in place above the midpoint of the feet."""
         x, y, z = self._base.root(time_s)
         cx, cz = self._stance.centre_m
         return (x + cx, y, z + cz), self._base.whole(time_s)
 
-    def _at_task(self, time_s: float, step_s: float) -> tuple[Vector, list[Quaternion]]:
+    def _at_task(self, time_s: float, step_s: float) -> tuple[Vector, FloatArray]:
         local = self._base.damped(time_s)
         root = self._stand(local, time_s, step_s)
         for side, hand in enumerate(self._hands):
@@ -191,11 +191,11 @@ class SimulatedParticipant:
             return root, local
         share = minimum_jerk(self._task)
         free_root, free = self._roaming(time_s)
-        mixed = [q_blend(a, b, share) for a, b in zip(free, local, strict=True)]
+        mixed = self._posture.blended(free, local, share)
         blended = [a + share * (b - a) for a, b in zip(free_root, root, strict=True)]
         return cast("Vector", tuple(blended)), mixed
 
-    def _stand(self, local: list[Quaternion], time_s: float, step_s: float) -> Vector:
+    def _stand(self, local: FloatArray, time_s: float, step_s: float) -> Vector:
         """Place feet, hips and trunk; return the position of the hips."""
         posture, stance, placement = self._posture, self._stance, self._placement
         self._feet_seen.perceive(time_s)
@@ -212,7 +212,7 @@ class SimulatedParticipant:
         posture.lean(local, placement.lean(step_s))
         ankles = tuple(stance.ankle(foot, posture.ankle_height_m) for foot in (0, 1))
         left, right = ankles
-        highest = posture.highest_hips((x, z), local[0], (left, right))
+        highest = posture.highest_hips((x, z), local, (left, right))
         root = (x, placement.height(highest, step_s), z)
         posture.legs(local, root, (left, right))
         return root
@@ -221,7 +221,7 @@ class SimulatedParticipant:
         """Return where a hanging hand's finger tip was in the last frame."""
         if self._pose is None:
             root, local = self._roaming(self._time_s or 0.0)
-            self._pose = Pose(np.array(root), np.array(local))
+            self._pose = Pose(np.array(root), local)
         world = forward_kinematics(self._skeleton, self._pose.root_position_m, self._pose.rotations)
         hand = JOINT_INDEX[f"{SIDE_NAMES[side]}Hand"]
         tip = world.positions_m[hand] + rotate(world.rotations[hand], self._skeleton.ends_m[hand])

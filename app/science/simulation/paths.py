@@ -14,12 +14,13 @@ elbow or a knee that becomes straight, fingers along the arm's own axis. There a
 quickly as a person's can, and reaches its rotation some frames later.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import acos, cos, pi, radians, sqrt
 
-from app.science.rotations import Quaternion, Vector, q_slerp, v_length, v_subtract
+import numpy as np
+
+from app.science.rotations import FloatArray, Quaternion, Vector, q_slerp, v_length, v_subtract
 
 _OVERLAP = 0.25
 
@@ -89,19 +90,22 @@ MOST_SINK_M_PER_S = 2.5
 """Fastest sinking of the hips: after a third of a second of free fall they reach 3 m/s."""
 
 
-def limit_turn_rate(
-    previous: Sequence[Quaternion], rotations: Sequence[Quaternion], step_s: float
-) -> list[Quaternion]:
-    """Limit how far each local rotation turns from its previous one within a step.
+def limit_turn_rate(previous: FloatArray, rotations: FloatArray, step_s: float) -> FloatArray:
+    """Limit how far each local rotation (n, 4) turns from its previous one within a step.
 
     All quaternions have length 1. Each turns the shorter way.
     """
+    from app.science.simulation.posture_kernels import least_cosine
+
     half_turn = 0.5 * MOST_TURN_RAD_PER_S * step_s
     near = cos(min(half_turn, 0.5 * pi))
-    return [
+    if least_cosine(previous, rotations) >= near:
+        return rotations
+    limited = [
         b if abs(cosine := _dot(a, b)) >= near else q_slerp(a, b, half_turn / acos(abs(cosine)))
-        for a, b in zip(previous, rotations, strict=True)
+        for a, b in zip(previous.tolist(), rotations.tolist(), strict=True)
     ]
+    return np.array(limited)
 
 
 def _dot(a: Quaternion, b: Quaternion) -> float:

@@ -1,4 +1,4 @@
-"""Inverse kinematics of arms and legs by the law of cosines.
+"""Inverse kinematics of arms and legs by the law of cosines, compiled.
 
 Two bones of lengths a and b lead from a root to an end; the joint between them lies in the plane of
 the root, the end and a pole, on the pole's side. With d the distance from root to end,
@@ -7,19 +7,27 @@ the root, the end and a pole, on the pole's side. With d the distance from root 
 
 is the angle at the root between the direction to the end and the first bone. An end out of reach is
 approached as far as possible: d is limited to |a - b| .. a + b, in the end's direction.
+
+Importing this module loads the compiler.
 """
 
-from dataclasses import dataclass
 from math import sqrt
+from typing import NamedTuple
 
-from app.science.rotations import Quaternion, Vector, q_from_axes, v_cross, v_dot, v_length, v_scale
+from app.science import rotations
+from app.science.compiled import compiled, compiled_inside
+from app.science.rotations import Quaternion, Vector
+
+v_cross, v_dot = compiled_inside(rotations.v_cross), compiled_inside(rotations.v_dot)
+v_length, v_scale = compiled_inside(rotations.v_length), compiled_inside(rotations.v_scale)
+q_from_axes = compiled_inside(rotations.q_from_axes)
 
 _TINY_M = 1e-9
-_SPARE_POLES: tuple[Vector, ...] = ((0.0, 0.0, -1.0), (0.0, -1.0, 0.0))
+_FORWARD: Vector = (0.0, 0.0, -1.0)
+_DOWN: Vector = (0.0, -1.0, 0.0)
 
 
-@dataclass(frozen=True)
-class TwoBone:
+class TwoBone(NamedTuple):
     """A solved limb, in world axes.
 
     Attributes:
@@ -34,6 +42,21 @@ class TwoBone:
     short_m: float
 
 
+@compiled
+def _across(way: Vector, pole: Vector) -> Vector:
+    """Return the unit component of the pole across `way`, or of a spare pole if it has none."""
+    for candidate in (pole, _FORWARD, _DOWN):
+        along = v_dot(way, candidate)
+        x = candidate[0] - along * way[0]
+        y = candidate[1] - along * way[1]
+        z = candidate[2] - along * way[2]
+        length = sqrt(x * x + y * y + z * z)
+        if length > 1e-3 * v_length(candidate):
+            return (x / length, y / length, z / length)
+    return (1.0, 0.0, 0.0)
+
+
+@compiled
 def solve_two_bone(
     root_m: Vector, end_m: Vector, upper_m: float, lower_m: float, pole: Vector
 ) -> TwoBone:
@@ -48,7 +71,8 @@ def solve_two_bone(
     cosine = (upper_m * upper_m + reach * reach - lower_m * lower_m) / (2.0 * upper_m * reach)
     cosine = min(1.0, max(-1.0, cosine))
     along, out = upper_m * cosine, upper_m * sqrt(1.0 - cosine * cosine)
-    mx, my, mz = (along * w + out * s for w, s in zip(way, side, strict=True))
+    mx, my = along * way[0] + out * side[0], along * way[1] + out * side[1]
+    mz = along * way[2] + out * side[2]
     fx, fy, fz = reach * way[0] - mx, reach * way[1] - my, reach * way[2] - mz
     return TwoBone(
         (mx / upper_m, my / upper_m, mz / upper_m),
@@ -58,19 +82,7 @@ def solve_two_bone(
     )
 
 
-def _across(way: Vector, pole: Vector) -> Vector:
-    """Return the unit component of the pole across `way`, or of a spare pole if it has none."""
-    for candidate in (pole, *_SPARE_POLES):
-        along = v_dot(way, candidate)
-        x = candidate[0] - along * way[0]
-        y = candidate[1] - along * way[1]
-        z = candidate[2] - along * way[2]
-        length = sqrt(x * x + y * y + z * z)
-        if length > 1e-3 * v_length(candidate):
-            return (x / length, y / length, z / length)
-    return (1.0, 0.0, 0.0)
-
-
+@compiled
 def arm_rotation(bone: Vector, normal: Vector, side: float) -> Quaternion:
     """Return world_from_joint of an arm bone that points along `bone`.
 
@@ -81,6 +93,7 @@ def arm_rotation(bone: Vector, normal: Vector, side: float) -> Quaternion:
     return q_from_axes(x_axis, y_axis, v_cross(x_axis, y_axis))
 
 
+@compiled
 def hand_rotation(fingers: Vector, normal: Vector, side: float) -> Quaternion:
     """Return world_from_hand for fingers along a unit direction, with the least possible twist.
 
@@ -97,6 +110,7 @@ def hand_rotation(fingers: Vector, normal: Vector, side: float) -> Quaternion:
     return arm_rotation(fingers, across, side)
 
 
+@compiled
 def leg_rotation(bone: Vector, normal: Vector) -> Quaternion:
     """Return world_from_joint of a leg bone: in the T-pose it runs along -y and bends about x."""
     y_axis = (-bone[0], -bone[1], -bone[2])

@@ -46,6 +46,12 @@ class SurfaceArrays:
         """The lower and upper corner, (3,) each, of the box around all surfaces."""
         return self.low_m.min(axis=0), self.high_m.max(axis=0)
 
+    @cached_property
+    def with_bounds_m(self) -> tuple[Floats, Floats]:
+        """The corners of every surface and, last, of the box around all of them, (S + 1, 3)."""
+        low_m, high_m = self.bounds_m
+        return np.vstack((self.low_m, low_m)), np.vstack((self.high_m, high_m))
+
 
 def touching(arrays: SurfaceArrays, segments_m: Floats, radii_m: Floats) -> Bools:
     """Return which parts touch which surfaces in one frame: bool (S, P).
@@ -64,16 +70,13 @@ def touching_and_near(
     Both results are bool (S, P). Arguments as in `touching`; `release_margin_m` >= 0. Raises
     ValueError if the shapes do not fit.
     """
+    from app.science.tasks.contacts_kernels import contacts_of_frame  # loads the compiler
+
     n_parts = _check(segments_m, radii_m, release_margin_m, 3)
     is_touching = np.zeros((len(arrays.keys), n_parts), dtype=np.bool_)
-    pairs = _near_pairs(arrays, segments_m, radii_m, release_margin_m)
-    if pairs is None:
-        return is_touching, is_touching.copy()
-    surface, part, distance_m = pairs
     is_near = is_touching.copy()
-    radius_m = radii_m[part]
-    is_touching[surface, part] = distance_m <= radius_m
-    is_near[surface, part] = distance_m <= radius_m + release_margin_m
+    low_m, high_m = arrays.with_bounds_m
+    contacts_of_frame(low_m, high_m, segments_m, radii_m, release_margin_m, is_touching, is_near)
     return is_touching, is_near
 
 

@@ -45,7 +45,10 @@ class SurfaceTouches:
     ) -> None:
         import mujoco
 
-        self._mujoco, self._model, self._data = mujoco, avatar.model, avatar.data
+        from app.science.avatar.simulation import touch_kernels  # loads the compiler
+
+        self._mujoco, self._kernels = mujoco, touch_kernels
+        self._model, self._data = avatar.model, avatar.data
         self._margin_m = margin_m
         boxes = avatar.boxes
         self._surface_geoms = [boxes.geoms[name] for name in surfaces]
@@ -62,27 +65,25 @@ class SurfaceTouches:
         """
         touched = np.zeros_like(self._continuing)
         if self._data.ncon:
-            first, second = self._data.contact.geom.T
-            for geoms, others in ((first, second), (second, first)):
-                surfaces, joints = self._surface_of[geoms], self._joint_of[others]
-                hit = (surfaces >= 0) & (joints >= 0)
-                touched[surfaces[hit], joints[hit]] = True
+            geoms = self._data.contact.geom
+            self._kernels.mark_contacts(geoms, self._surface_of, self._joint_of, touched)
         near = touched.copy()
         for row in self._marks:
             self._read_mark(row, touched, near)
-        for surface, joint in np.argwhere(self._continuing & ~near):
-            geoms = np.flatnonzero((self._joint_of == joint) & self._solid())
-            near[surface, joint] = self._distance_m(int(surface), geoms) <= self._margin_m
+        apart = self._continuing & ~near
+        if apart.any():
+            for surface, joint in np.argwhere(apart):
+                geoms = np.flatnonzero((self._joint_of == joint) & self._solid())
+                near[surface, joint] = self._distance_m(int(surface), geoms) <= self._margin_m
         self._continuing = near & (self._continuing | touched)
         return touched, near
 
     def _read_mark(self, surface: int, touched: Bools, near: Bools) -> None:
-        mark, model = self._surface_geoms[surface], self._model
-        offsets = self._data.geom_xpos - self._data.geom_xpos[mark]
-        reach = model.geom_rbound + model.geom_rbound[mark] + self._margin_m
-        close = (np.einsum("gi,gi->g", offsets, offsets) <= reach**2) & (self._joint_of >= 0)
-        close &= self._solid()
-        for geom in np.flatnonzero(close):
+        model = self._model
+        for geom in self._kernels.near_geoms(
+            self._surface_geoms[surface], self._data.geom_xpos, model.geom_rbound,
+            model.geom_contype, self._joint_of, self._margin_m,
+        ):  # fmt: skip
             distance_m = self._distance_m(surface, np.array([geom]))
             touched[surface, self._joint_of[geom]] |= distance_m <= 0.0
             near[surface, self._joint_of[geom]] |= distance_m <= self._margin_m
