@@ -66,6 +66,8 @@ def changes(page: Page, count: int) -> None:
     expect(page.get_by_text(text, exact=True).first).to_be_visible(timeout=PATIENCE_MS)
 
 
+# The same way by keyboard is part of every run.
+@pytest.mark.long
 def test_an_avatar_is_made_and_used_by_mouse(
     running_server: LiveServer,
     page_factory: Callable[..., Page],

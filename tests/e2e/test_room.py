@@ -35,6 +35,8 @@ def _is_skin(pixels: NDArray[np.int16], at: tuple[float, float]) -> bool:
     return bool(red > green + 15 > blue + 25)
 
 
+# `./run bench vr --only mirror` counts the same; drawing it without a graphics card takes minutes.
+@pytest.mark.long
 def test_an_eye_takes_few_draw_calls_and_never_changes_its_target(
     new_context: ContextFactory, study: dict[str, Any], bundle: Path
 ) -> None:

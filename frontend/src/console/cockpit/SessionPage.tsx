@@ -2,7 +2,7 @@
 import { useDisclosure } from "@mantine/hooks";
 import type { SessionView } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
-import { type JSX, useState } from "react";
+import { type JSX, useRef, useState } from "react";
 import { useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
 import { AfterWithdrawal } from "../rights/AfterWithdrawal";
@@ -80,6 +80,8 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
   const live = { ...direct, send, sending: direct.sending || flight.looking };
   const alarms = useAlarms(session, live.store, live.storage, live.failing);
   const worst = alarms.on[0];
+  const isStaged = hasMovement(session);
+  const overPicture = useRef<HTMLDivElement>(null);
   const ended = session.ended_at !== null;
   // Visible in the tab's title while another tab is in front.
   useTitle(
@@ -110,7 +112,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
     step: `${session.current?.index} ${session.current?.status}`,
   });
   return (
-    <div className={classes.cockpit}>
+    <div className={classes.cockpit} data-staged={isStaged || undefined}>
       <Header
         session={session}
         feed={live.feed}
@@ -122,7 +124,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       <SignalStrip session={session} alarms={alarms} onHistory={histories.open} />
       <Timeline session={session} />
       <div className={classes.centre} data-tour="centre">
-        <div className={hasMovement(session) ? classes.fold : classes.open}>
+        <div className={isStaged ? classes.fold : classes.open}>
           {session.simulated && (
             <Notice
               tone="sim"
@@ -135,21 +137,25 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
           {!can("run") && <Notice tone="info" icon="info" title={t("read.only")} />}
           {ended && can("rights") && <AfterWithdrawal session={session} send={live.send} />}
           <CommandFailure live={live} />
-          {session.refusal !== null ? (
-            <RefusedCard refusal={session.refusal} onReasonNeeded={openReason} />
-          ) : session.held !== null ? (
-            <HeldCard held={session.held} onReasonNeeded={openReason} />
-          ) : (
-            <CurrentStep
-              session={session}
-              live={live}
-              isReady={flight.isClear}
-              onReasonNeeded={openReason}
-              onEnterAnswers={entries.open}
-            />
-          )}
+          <div className={isStaged ? classes.stage : classes.open}>
+            <div ref={overPicture} className={classes.overPicture}>
+              {session.refusal !== null ? (
+                <RefusedCard refusal={session.refusal} onReasonNeeded={openReason} />
+              ) : session.held !== null ? (
+                <HeldCard held={session.held} onReasonNeeded={openReason} />
+              ) : (
+                <CurrentStep
+                  session={session}
+                  live={live}
+                  isReady={flight.isClear}
+                  onReasonNeeded={openReason}
+                  onEnterAnswers={entries.open}
+                />
+              )}
+            </div>
+            {isStaged && <LiveCard session={session} store={live.store} cover={overPicture} />}
+          </div>
           {isPlanned && <PreflightCard session={session} flight={flight} />}
-          {hasMovement(session) && <LiveCard session={session} store={live.store} />}
         </div>
         <TelemetryCard session={session} store={live.store} />
         {ended && <PhaseTable session={session} />}

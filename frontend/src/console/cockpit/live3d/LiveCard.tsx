@@ -5,7 +5,7 @@ import type { PoseTouch } from "@shared/api/poses";
 import type { SessionView } from "@shared/api/types";
 import { type BodyMarks, NO_MARKS } from "@shared/stage/marks";
 import { Icon } from "@shared/ui/Icon";
-import { type JSX, useEffect, useRef } from "react";
+import { type JSX, type RefObject, useEffect, useRef } from "react";
 import { MarksLegend } from "../../avatarChanges/MarksLegend";
 import { BodyNotice } from "../../bodyView/BodyNotice";
 import { DrawnAs } from "../../bodyView/DrawnAs";
@@ -21,9 +21,11 @@ import { VIEW_KEYS, VIEWS, type View } from "./views";
 interface LiveCardProps {
   readonly session: SessionView;
   readonly store: TelemetryStore;
+  /** What lies over the upper edge of the picture: the scene is drawn below its middle. */
+  readonly cover: RefObject<HTMLElement | null>;
 }
 
-export function LiveCard({ session, store }: LiveCardProps): JSX.Element {
+export function LiveCard({ session, store, cover }: LiveCardProps): JSX.Element {
   const { t } = useTexts();
   const [isShown, setShown] = useLocalStorage({ key: "reembody.cockpit.live", defaultValue: true });
   const [view, setView] = useLocalStorage<View>({
@@ -34,10 +36,12 @@ export function LiveCard({ session, store }: LiveCardProps): JSX.Element {
   return (
     <section className={classes.card} data-tour="live" aria-label={t("live3d.title")}>
       <div className={classes.head}>
-        <h2 className={cockpit.sectionTitle} style={{ margin: 0 }}>
-          <Icon name="body" size={16} />
-          {t("live3d.title")}
-        </h2>
+        {!isShown && (
+          <h2 className={cockpit.sectionTitle} style={{ margin: 0 }}>
+            <Icon name="body" size={16} />
+            {t("live3d.title")}
+          </h2>
+        )}
         {session.simulated && <span className={classes.simulated}>{t("live3d.simulated")}</span>}
         {isShown && (
           <SegmentedControl
@@ -66,16 +70,20 @@ export function LiveCard({ session, store }: LiveCardProps): JSX.Element {
           {t(isShown ? "live3d.hide.short" : "live3d.show.short")}
         </Button>
       </div>
-      {isShown && <Picture session={session} store={store} view={view} />}
+      {isShown && <Picture session={session} store={store} cover={cover} view={view} />}
     </section>
   );
 }
 
-function Picture({ session, store, view }: LiveCardProps & { readonly view: View }): JSX.Element {
+interface PictureProps extends LiveCardProps {
+  readonly view: View;
+}
+
+function Picture({ session, store, cover, view }: PictureProps): JSX.Element {
   const { t } = useTexts();
   const root = useRef<HTMLDivElement>(null);
   const marks = marksOf(session);
-  const live = useLiveScene(root, session.id, store, view, marks);
+  const live = useLiveScene(root, { id: session.id, store, view, marks, cover });
   const isBlinded = live.setup?.blinded ?? true;
   return (
     <>

@@ -36,6 +36,7 @@ export class LiveScene extends Space3d {
   #view: View = "third";
   #marks: BodyMarks3d | null = null;
   #marked: BodyMarks = NO_MARKS;
+  #covered = 0;
 
   /** Throws if the browser has no WebGL. */
   constructor(canvas: HTMLCanvasElement) {
@@ -129,6 +130,12 @@ export class LiveScene extends Space3d {
     this.#moved();
   }
 
+  /** Draw the scene in the middle of what is left below the upper `height` pixels. */
+  cover(height: number): void {
+    this.#covered = height;
+    this.#moved();
+  }
+
   protected override resized(): void {
     this.#moved();
   }
@@ -156,7 +163,16 @@ export class LiveScene extends Space3d {
       eyes: eyes?.received ? eyes.placed : null,
       followed: followed?.received ? followed.placed : null,
     });
+    this.#uncover();
     this.requestPicture();
+  }
+
+  /** Shift the picture down by half of what is covered; the wearer's hands are low already. */
+  #uncover(): void {
+    const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
+    const isFree = this.#view === "first" || this.#covered >= height;
+    if (width === 0 || isFree) this.camera.clearViewOffset();
+    else this.camera.setViewOffset(width, height, 0, -this.#covered / 2, width, height);
   }
 }
 

@@ -29,12 +29,19 @@ export interface Live {
   readonly body: BodyState;
 }
 
+export interface Watched {
+  /** The session's id. */
+  readonly id: string;
+  readonly store: TelemetryStore;
+  readonly view: View;
+  readonly marks: BodyMarks;
+  /** What lies over the upper edge of the picture. */
+  readonly cover: RefObject<HTMLElement | null>;
+}
+
 export function useLiveScene(
   root: RefObject<HTMLDivElement | null>,
-  id: string,
-  store: TelemetryStore,
-  view: View,
-  marks: BodyMarks,
+  { id, store, view, marks, cover }: Watched,
 ): Live {
   const scheme = useComputedColorScheme("light");
   const isPageVisible = useDocumentVisibility() === "visible";
@@ -64,6 +71,19 @@ export function useLiveScene(
   }, [root, scene, setup, scheme, store, model]);
 
   useEffect(() => scene?.setView(view), [scene, view]);
+
+  useEffect(() => {
+    const [canvas, over] = [root.current, cover.current];
+    if (scene === null || canvas === null || over === null) return;
+    const measure = () => {
+      const { top } = canvas.getBoundingClientRect();
+      scene.cover(Math.max(0, over.getBoundingClientRect().bottom - top));
+    };
+    const observer = new ResizeObserver(measure);
+    observer.observe(over);
+    observer.observe(canvas);
+    return () => observer.disconnect();
+  }, [root, cover, scene]);
 
   // By their content: the session is a new object whenever anything in it changes.
   const marked = JSON.stringify(marks);
