@@ -366,6 +366,41 @@ def test_several_measures_are_never_averaged(tmp_path: Path) -> None:
     assert limbs["levels"] == ["foot", "hand"]
 
 
+def _limbs(tmp_path: Path, line: str, changed: str) -> Path:
+    """Write both limbs of six people at two latencies, with one line changed or left out."""
+    lines = [
+        f"P{person},{latency},{limb},{person + latency / 50 + len(limb)}"
+        for person in range(6)
+        for latency in (0, 125)
+        for limb in ("hand", "foot")
+    ]
+    place = next(at for at, one in enumerate(lines) if one.startswith(line))
+    lines[place : place + 1] = [changed] if changed else []
+    return _written(tmp_path, ["person,latency,limb,score", *lines])
+
+
+@pytest.mark.parametrize("asked", [("--where", "limb=hand"), ("--average", "limb")])
+def test_a_word_that_is_spelt_otherwise_is_asked_about(
+    tmp_path: Path, asked: tuple[str, str]
+) -> None:
+    """A row of `Hand` is neither left out nor averaged without a word; the column is named."""
+    path = _limbs(tmp_path, "P3,125,hand", "P3,125,Hand,5")
+    figures = _COMMAND.figures(path, *_FACTOR, *asked)
+    assert any("'Hand'" in one and "only in capitals" in one for one in figures["warnings"])
+    assert figures["missing"]["averaged_over"] == (["limb"] if asked[0] == "--average" else [])
+
+
+def test_people_whose_mean_is_of_one_limb_alone_are_named(tmp_path: Path) -> None:
+    """With `--average`, a cell without its foot is no silent mean of the hand."""
+    path = _limbs(tmp_path, "P4,0,foot", "")
+    figures = _COMMAND.figures(path, *_FACTOR, "--average", "limb")
+    assert any("P4 lack a value of limb" in one for one in figures["warnings"])
+    whole = _COMMAND.figures(
+        _limbs(tmp_path, "P4,0,foot", "P4,0,foot,8"), *_FACTOR, "--average", "limb"
+    )
+    assert not any("lack a value of" in one for one in whole["warnings"])
+
+
 def test_words_that_tell_the_rows_of_a_cell_apart_are_never_averaged_silently(
     tmp_path: Path,
 ) -> None:

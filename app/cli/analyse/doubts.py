@@ -4,12 +4,11 @@ Nothing is corrected, since only the person who wrote the table knows: each doub
 the line, what was done, and what to do.
 """
 
-import re
 from collections.abc import Sequence
 from difflib import get_close_matches
 from statistics import median
 
-from app.cli.analyse.inputs import TidyInput
+from app.cli.analyse.inputs import TidyInput, plainly
 from app.science.statistics import as_number, ordered_levels, place_of
 
 MISSING_CODES = frozenset({-9999.0, -999.0, -99.0, -9.0, 99.0, 999.0, 9999.0})
@@ -73,13 +72,50 @@ def _rare(factor: str, levels: Sequence[str], having: Sequence[dict[str, int]]) 
 def _spelt_alike(factor: str, levels: Sequence[str]) -> list[str]:
     spelt: dict[str, list[str]] = {}
     for level in levels:
-        spelt.setdefault(re.sub(r"[\s_-]+", "", level.casefold()), []).append(level)
+        spelt.setdefault(plainly(level), []).append(level)
     return [
         f"{factor} {' and '.join(map(repr, names))} differ only in capitals, spaces or dashes: one"
         f" level? They were analysed as {len(names)}; if they are one, spell them alike"
         for names in spelt.values()
         if len(names) > 1 and any(as_number(name) is None for name in names)
     ]
+
+
+def nearly_asked_for(read: TidyInput) -> list[str]:
+    """Ask about rows that a condition left out for a slip in the spelling of their value."""
+    found = []
+    for condition, value, lines in read.spelt_otherwise:
+        shown = ", ".join(map(str, lines[:_SHOWN]))
+        more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
+        found.append(
+            f"--where {condition!r} left out line {shown}{more} with {value!r}, which differs only"
+            " in capitals, spaces or dashes: the same? If so, spell them alike"
+        )
+    return found
+
+
+def doubtful_means(read: TidyInput) -> list[str]:
+    """Ask about words that are averaged over and spelt alike, and name who lacks some of them.
+
+    The mean of a cell without the feet is one of the hands alone, and differs for that reason.
+    """
+    found = []
+    keys = list(zip(read.subjects, *read.within.values(), strict=True))
+    for name, words in read.averaged_words.items():
+        found += _spelt_alike(name, ordered_levels(words))
+        having: dict[tuple[str, ...], set[str]] = {}
+        for key, word in zip(keys, words, strict=True):
+            having.setdefault(key, set()).add(plainly(word))
+        every = {plainly(word) for word in words}
+        lacking = sorted({key[0] for key, own in having.items() if own != every})
+        if lacking:
+            shown = ", ".join(lacking[:_SHOWN]) + (", ..." if lacking[_SHOWN:] else "")
+            found.append(
+                f"{shown} lack a value of {name} in some cell"
+                f" ({', '.join(ordered_levels(words))}): its mean is one of the others alone."
+                f" Name the factor with --within {name!r} to leave them out"
+            )
+    return found
 
 
 def missing_codes(measure: str, read: TidyInput) -> list[str]:

@@ -12,8 +12,8 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import mode
 
@@ -55,7 +55,11 @@ class TidyInput:
     replicates: int
     left_out: dict[str, int]
     told_apart_by: tuple[str, ...] = ()
-    """Columns of numbers, such as of trials, that tell the values of each cell apart."""
+    """Columns that tell the values of a cell apart, as of trials, and those averaged over."""
+    averaged_words: Mapping[str, list[str]] = field(default_factory=dict)
+    """The columns that may be averaged over, one entry per row."""
+    spelt_otherwise: tuple[tuple[str, str, tuple[int, ...]], ...] = ()
+    """Conditions, values spelt almost as theirs, and the lines that were left out for it."""
 
 
 @dataclass(frozen=True)
@@ -94,8 +98,10 @@ def read_tidy(
                 " Give every row one cell for each column, and put text with separators in quotes."
             )
     left_out = {}
+    spelt_otherwise: list[tuple[str, str, tuple[int, ...]]] = []
     for condition in where:
         kept = _fulfilling(condition, header, rows)
+        spelt_otherwise += _spelt_otherwise(condition, header, rows, kept)
         left_out[condition] = len(rows) - len(kept)
         rows = kept
     for name in within:
@@ -123,6 +129,8 @@ def read_tidy(
         replicates=_repeated(rows, keys),
         left_out={reason: count for reason, count in left_out.items() if count},
         told_apart_by=told_apart_by,
+        averaged_words={name: others[name] for name in averaged},
+        spelt_otherwise=tuple(spelt_otherwise),
     )
 
 
@@ -148,7 +156,13 @@ def _require_one_value(
         _require_one_measure(name, words, keys)
         if name not in averaged:
             _require_no_parts(name, words, within_averaged)
-    return tuple(name for name, words in others.items() if _tells_apart(words, keys))
+    # What was asked for is said even if a mistyped word keeps it from telling every cell apart.
+    several = len(set(keys)) < len(keys)
+    return tuple(
+        name
+        for name, words in others.items()
+        if _tells_apart(words, keys) or (several and name in averaged)
+    )
 
 
 def _require_one_measure(
@@ -230,6 +244,25 @@ def _fulfilling(condition: str, header: list[str], rows: list[_Row]) -> list[_Ro
         shown = ", ".join(found[:_VALUES_SHOWN]) + (", ..." if len(found) > _VALUES_SHOWN else "")
         raise UnusableTable(f"No row has {wanted!r} in column {name!r}; there are: {shown}.")
     return kept
+
+
+def _spelt_otherwise(
+    condition: str, header: list[str], rows: list[_Row], kept: list[_Row]
+) -> list[tuple[str, str, tuple[int, ...]]]:
+    """Return values that differ from the wanted one in capitals, spaces or dashes, with lines."""
+    name, _, wanted = (part.strip() for part in condition.partition("="))
+    place = header.index(name)
+    lines: dict[str, list[int]] = {}
+    taken = {row.line for row in kept}
+    for row in rows:
+        if row.line not in taken and plainly(row.cells[place]) == plainly(wanted):
+            lines.setdefault(row.cells[place], []).append(row.line)
+    return [(condition, value, tuple(own)) for value, own in lines.items()]
+
+
+def plainly(word: str) -> str:
+    """Return a word without what a slip changes: capitals, spaces and dashes."""
+    return re.sub(r"[\s_-]+", "", word.casefold())
 
 
 def _table(path: Path) -> tuple[str, list[str], list[_Row]]:

@@ -6,7 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from app.cli.analyse.doubts import alike_subjects, missing_codes, mistyped_levels
+from app.cli.analyse.doubts import (
+    alike_subjects,
+    doubtful_means,
+    missing_codes,
+    mistyped_levels,
+    nearly_asked_for,
+)
 from app.cli.analyse.families import Family, families_of, mean_interval, tried
 from app.cli.analyse.inputs import TidyInput, read_tidy
 from app.science.statistics import (
@@ -109,7 +115,9 @@ def carry_out(order: AnalyseOrder) -> Analysis:
     _check_usable(order, cells, complete, mistyped)
     left_out = read.left_out | ({f"no {order.measure}": cells.n_empty} if cells.n_empty else {})
     alike = alike_subjects(cells.subjects, order.subject) + mistyped
-    warnings = alike + _warnings(cells, complete, read)
+    warnings = (
+        alike + nearly_asked_for(read) + doubtful_means(read) + _warnings(cells, complete, read)
+    )
     warnings += missing_codes(order.measure, read)
     warnings += [
         f"{count} rows have {reason} and were left out"

@@ -13,8 +13,7 @@ from app.features.movement.humanoids.service import parsed_figure
 from app.features.results.analysis.material import OWN_BODY
 from app.models import HumanoidRow
 from app.protocol.humanoid import figure_json
-from app.science.avatar.body import figure_of
-from app.science.avatar.body.proportions import segment_lengths
+from app.science.avatar.body import figure_of, proportions
 from tests.api.people import sign_in
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.avatar.test_avatars import PATH as AVATARS
@@ -209,7 +208,7 @@ def test_unusual_proportions_are_named_with_their_usual_range() -> None:
     figure = figure_of(read_humanoid(humanoid_file(Model(edit=shortened))).humanoid)
     check = {one.key: one for one in checks_of(usual, figure)}["proportions"]
     (found,) = check.lengths
-    person_m = segment_lengths(figure.stature_m)["forearm"]
+    person_m = proportions(figure.stature_m).segments_m["forearm"]
     assert (check.status, found.name, check.stature_m) == ("note", "forearm", figure.stature_m)
     assert found.length_m == pytest.approx(0.55 * 0.93 * person_m, rel=1e-3)
     assert found.usual_m == person_m
