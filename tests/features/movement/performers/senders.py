@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from app.adapters.live import JsonTrackers, NatNetClient, OscTrackers, Reading
-from app.features.movement.live.sources import Sample, Source, SourceKey
+from app.features.movement.live.sources import DoorKey, Sample, Source, SourceKey
 from app.science.retargeting import example_walk
 from app.science.rig import RigMotion
 from app.science.rotations import normalise
@@ -113,7 +113,7 @@ def by_natnet(motion: RigMotion, *, in_parent: bool, shuffled: bool = False) -> 
 
 
 def samples(
-    door: str, datagrams: Datagrams, *, address: str = "127.0.0.1:5", start_s: float = 100.0
+    door: DoorKey, datagrams: Datagrams, *, address: str = "127.0.0.1:5", start_s: float = 100.0
 ) -> Iterator[Sample]:
     """Yield what a door's follower gets of datagrams that arrive every 4 ms."""
     read: Callable[[bytes], Reading] = {
@@ -125,7 +125,7 @@ def samples(
     for number, datagram in enumerate(datagrams):
         reading, arrival_s = read(datagram), start_s + 0.004 * number
         if source is None:
-            key = SourceKey(door, address, reading.source)  # type: ignore[arg-type]
+            key = SourceKey(door, address, reading.source)
             source = Source(key, arrival_s, arrival_s)
         sample = source.note(reading, arrival_s)
         if sample is not None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.adapters.live import Pose
-from app.features.movement.live.sources import Sample
+from app.features.movement.live.sources import DoorKey, Sample
 from app.features.movement.performers.performer import Performer, PerformerName
 from app.features.movement.performers.recording import Recording, at_constant_rate
 from app.science.rig import RigMotion
@@ -21,9 +21,9 @@ def walk() -> RigMotion:
     return part_of_walk(60, 90)
 
 
-def performer(door: str) -> Performer:
+def performer(door: DoorKey) -> Performer:
     """Return a performer of a door."""
-    return Performer(PerformerName(door, "x", ""), "127.0.0.1:5")  # type: ignore[arg-type]
+    return Performer(PerformerName(door, "x", ""), "127.0.0.1:5")
 
 
 def without(sample: Sample, *bones: str) -> Sample:
@@ -104,12 +104,11 @@ def test_other_lengths_of_bones_are_another_skeleton(walk: RigMotion) -> None:
     assert (recording.state, recording.frames) == ("changed", 10)
 
 
-def a_recording(one: Performer, **fields: object) -> Recording:
+def a_recording(one: Performer, *, limit_s: float = 10.0, max_frames: int = 1000) -> Recording:
     """Return a recording that has just begun."""
     assert one.agreed is not None
     at = datetime(2026, 1, 1, tzinfo=UTC)
-    limits = {"limit_s": 10.0, "max_frames": 1000, **fields}
-    return Recording("r", one.name, one.agreed.rig, "account:a", at, **limits)  # type: ignore[arg-type]
+    return Recording("r", one.name, one.agreed.rig, "account:a", at, limit_s, max_frames)
 
 
 def test_a_recording_ends_when_it_is_full(walk: RigMotion) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.adapters.live import SkeletonDefinition
-from app.features.movement.live.sources import Sample
+from app.features.movement.live.sources import DoorKey, Sample
 from app.features.movement.performers.assembly import BodyFrame
 from app.features.movement.performers.on_body import GroundKey, OnBody, reference_body
 from app.features.movement.performers.performer import Performer, PerformerName
@@ -43,10 +43,10 @@ def walk() -> RigMotion:
 
 
 def performed(
-    door: str, packets: list[Sample], skeleton: str = ""
+    door: DoorKey, packets: list[Sample], skeleton: str = ""
 ) -> tuple[Performer, list[BodyFrame]]:
     """Return the performer of samples, and its frames."""
-    performer = Performer(PerformerName(door, "x", skeleton), "127.0.0.1:5")  # type: ignore[arg-type]
+    performer = Performer(PerformerName(door, "x", skeleton), "127.0.0.1:5")
     frames: list[BodyFrame] = []
     for sample in packets:
         defined: SkeletonDefinition | None = next(iter(sample.skeletons), None)
