@@ -248,5 +248,9 @@ class Performers(Part):
     def _recording(self, recording_id: str) -> Recording:
         found = self._recordings.get(recording_id)
         if found is None:
-            raise NotFound("there is no such recording", value=recording_id)
+            raise NotFound(
+                "there is no such recording",
+                value=recording_id,
+                remedy="It was stored, discarded, or lost when the server ended: see the captures.",
+            )
         return found

@@ -50,6 +50,12 @@ def _proposed(names: tuple[str, ...], parents: tuple[int, ...]) -> tuple[JointMa
         check_joint_map(rig, joint_map)
     except JointMapError as error:
         return joint_map, tuple(f"{joint}: {problem}" for joint, problem in error.problems)
+    if joint_map.keys() == {"Hips"}:
+        # The body would glide about in its T-pose.
+        named = ", ".join(names[:LISTED])
+        return joint_map, (
+            f"of its bones ({named}) only the hips are known: name them by the body",
+        )
     return joint_map, ()
 
 

@@ -11,6 +11,7 @@ from app.adapters.live import Pose
 from app.features.movement.live.sources import DoorKey, Sample
 from app.features.movement.performers.performer import Performer, PerformerName
 from app.features.movement.performers.recording import Recording, at_constant_rate
+from app.features.movement.performers.views import _proposed
 from app.science.rig import RigMotion
 from tests.features.movement.performers.senders import by_json, by_vmc, part_of_walk, samples
 
@@ -159,3 +160,11 @@ def test_a_clock_that_does_not_count_seconds_is_not_used(walk: RigMotion) -> Non
         recording.take(replace(frame, mapped_s=frame.arrival_s))
     motion, _ = at_constant_rate(recording.recorded())
     assert motion.rate_hz == 250.0
+
+
+def test_a_skeleton_of_unknown_names_is_not_called_ready() -> None:
+    """If nothing but the hips is known by name, no body is moved, and the bones are named."""
+    _, problems = _proposed(("pelvis", "blob"), (-1, 0))
+    assert len(problems) == 1
+    assert "(pelvis, blob) only the hips are known" in problems[0]
+    assert _proposed(("pelvis", "head"), (-1, 0))[1] == ()
