@@ -19,6 +19,9 @@ import classes from "./Shell.module.css";
 const ReplayPage = lazy(async () => ({
   default: (await import("./replay/ReplayPage")).ReplayPage,
 }));
+const OutageSheet = lazy(async () => ({
+  default: (await import("./pages/outage/OutageSheet")).OutageSheet,
+}));
 const CapturePage = lazy(async () => ({
   default: (await import("./captures/CapturePage")).CapturePage,
 }));
@@ -73,6 +76,13 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
         {({ id }) => (
           <RequirePermission permission="run">
             <ConsentPage key={id} id={id} />
+          </RequirePermission>
+        )}
+      </Route>
+      <Route path="/sessions/:id/outage">
+        {({ id }) => (
+          <RequirePermission permission="run">
+            <OutageSheet key={id} id={id} />
           </RequirePermission>
         )}
       </Route>

@@ -66,6 +66,19 @@ export function Header(props: HeaderProps): JSX.Element {
             {t("consent.link")}
           </Button>
         )}
+        {can("run") && session.ended_at === null && (
+          <Tooltip label={t("outage.open")}>
+            <ActionIcon
+              component={Link}
+              href={`/sessions/${session.id}/outage`}
+              variant="default"
+              size="md"
+              aria-label={t("outage.open")}
+            >
+              <Icon name="plug" size={18} />
+            </ActionIcon>
+          </Tooltip>
+        )}
         {onChecks !== undefined && (
           <Tooltip label={t("preflight.open")}>
             <ActionIcon

@@ -32,6 +32,7 @@ import { selfTestsDe, selfTestsEn } from "../pages/equipment/selfTestTexts";
 import { equipmentDe, equipmentEn } from "../pages/equipment/texts";
 import { joinDe, joinEn } from "../pages/join/texts";
 import { networkDe, networkEn } from "../pages/network/texts";
+import { outageDe, outageEn } from "../pages/outage/texts";
 import { auditDe, auditEn } from "../pages/people/auditTexts";
 import { peopleDe, peopleEn } from "../pages/people/texts";
 import { analysisDe, analysisEn } from "../pages/study/analysisTexts";
@@ -98,6 +99,7 @@ const allEn = {
   ...frameEn,
   ...homeEn,
   ...analysisEn,
+  ...outageEn,
   ...importsEn,
   ...preregistrationEn,
 };
@@ -146,6 +148,7 @@ const allDe = {
   ...frameDe,
   ...homeDe,
   ...analysisDe,
+  ...outageDe,
   ...importsDe,
   ...preregistrationDe,
 };

@@ -29,6 +29,7 @@ import { SessionsTab } from "./SessionsTab";
 import { StatisticsTab } from "./StatisticsTab";
 import classes from "./StudyPage.module.css";
 import { SuggestionsTab } from "./SuggestionsTab";
+import { SummaryTab } from "./SummaryTab";
 import { VersionsTab } from "./VersionsTab";
 
 const CONTENT: Readonly<Record<SectionName, (props: { study: StudyDetail }) => JSX.Element>> = {
@@ -36,6 +37,7 @@ const CONTENT: Readonly<Record<SectionName, (props: { study: StudyDetail }) => J
   ledger: LedgerTab,
   sessions: SessionsTab,
   participants: ParticipantsTab,
+  summary: SummaryTab,
   dashboard: DashboardTab,
   statistics: StatisticsTab,
   preregistration: PreregistrationTab,
