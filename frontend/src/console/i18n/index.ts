@@ -18,6 +18,7 @@ import { verificationDe, verificationEn } from "../captures/verificationTexts";
 import { captureViewDe, captureViewEn } from "../captures/viewTexts";
 import { liveDe, liveEn } from "../cockpit/live3d/texts";
 import { preflightDe, preflightEn } from "../cockpit/preflight/texts";
+import { eventsDe, eventsEn } from "../cockpit/record/eventTexts";
 import { safetyDe, safetyEn } from "../cockpit/step/safetyTexts";
 import { downloadsDe, downloadsEn } from "../downloads/texts";
 import { fieldsDe, fieldsEn } from "../editor/fields/texts";
@@ -99,6 +100,7 @@ const allEn = {
   ...frameEn,
   ...homeEn,
   ...analysisEn,
+  ...eventsEn,
   ...outageEn,
   ...importsEn,
   ...preregistrationEn,
@@ -148,6 +150,7 @@ const allDe = {
   ...frameDe,
   ...homeDe,
   ...analysisDe,
+  ...eventsDe,
   ...outageDe,
   ...importsDe,
   ...preregistrationDe,
