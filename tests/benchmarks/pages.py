@@ -75,4 +75,6 @@ def _figures(route: str, rows: Sequence[Row]) -> tuple[Figure, ...]:
 def _tell(row: Row) -> None:
     if not row.sound:
         place = f"{row.route} {row.width} px {row.zoom} % {row.theme}"
-        print(f"{place}: " + "\n    ".join(row.found), file=sys.stderr)
+        figures = f"axe {row.axe}, overflow {row.overflow_px} px, shift {row.shift}"
+        found = "".join(f"\n    {one}" for one in row.found)
+        print(f"{place}: {figures}, errors {row.errors}{found}", file=sys.stderr, flush=True)

@@ -38,7 +38,10 @@ COLOUR_RULES = ("color-contrast", "link-in-text-block")
 RUN_AXE_ON_COLOURS = f"""async () => await axe.run(document, {{
   preload: false, runOnly: {{ type: "rule", values: {list(COLOUR_RULES)} }},
 }})"""
-FORGET = "window.localStorage.clear(); window.sessionStorage.clear();"
+# The blank page that a window opens with has no storage.
+FORGET = """
+if (location.protocol !== "about:") { localStorage.clear(); sessionStorage.clear(); }
+"""
 OBSERVE_SHIFTS = """
 window.layoutShift = 0;
 window.shifted = new Set();
@@ -48,7 +51,8 @@ new PerformanceObserver((list) => {
     window.layoutShift += entry.value;
     for (const { node } of entry.sources) {
       const place = node instanceof Element ? node : node?.parentElement;
-      if (place) window.shifted.add(`${place.tagName.toLowerCase()}.${place.className}`);
+      const styles = place?.getAttribute("class") ?? "";
+      if (place) window.shifted.add(`${place.tagName.toLowerCase()}.${styles}`);
     }
   }
 }).observe({ type: "layout-shift", buffered: true });

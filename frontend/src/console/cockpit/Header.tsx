@@ -32,7 +32,7 @@ export function Header(props: HeaderProps): JSX.Element {
   const can = usePermissions();
   return (
     <div className={classes.head}>
-      <div>
+      <div className={classes.who}>
         <h1 className={classes.participant}>{session.participant_code}</h1>
         <div className={classes.study}>
           <Link href={`/studies/${session.study_key}/sessions`}>{session.study_title}</Link>
@@ -66,7 +66,7 @@ export function Header(props: HeaderProps): JSX.Element {
             {t("consent.link")}
           </Button>
         )}
-        {can("run") && session.ended_at === null && (
+        {can("run") && session.status === "planned" && (
           <Tooltip label={t("outage.open")}>
             <ActionIcon
               component={Link}

@@ -12,6 +12,11 @@ interface LoadedProps<Data> {
 export function Loaded<Data>({ query, children }: LoadedProps<Data>): JSX.Element {
   if (query.data !== undefined) return <>{children(query.data)}</>;
   if (query.isError) return <Failure error={query.error} onRetry={() => void query.refetch()} />;
+  return <Waiting />;
+}
+
+/** What stands where something is still on its way. */
+export function Waiting(): JSX.Element {
   return (
     <Center mih={240}>
       <Loader />

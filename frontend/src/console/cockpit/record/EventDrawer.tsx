@@ -5,13 +5,12 @@ import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { changeWords } from "../../avatarChanges/words";
-import { useTexts } from "../../i18n";
+import { type Key, useTexts } from "../../i18n";
 import { eventsQuery } from "../../queries";
 import { stepName } from "../../steps";
 import { Loaded } from "../../ui/Loaded";
 import { RecordDrawer } from "../../ui/RecordDrawer";
 import classes from "../Panels.module.css";
-import { eventsEn } from "./eventTexts";
 
 interface EventDrawerProps {
   readonly session: SessionView;
@@ -83,9 +82,9 @@ function EventTable({ events, session }: EventTableProps): JSX.Element {
 
 /** An event's name; one of a newer server, which this page does not know, is named as stored. */
 function nameOf({ type }: SessionEvent, t: ReturnType<typeof useTexts>["t"]): string {
-  return `event.${type}` in eventsEn
-    ? t(`event.${type}` as keyof typeof eventsEn)
-    : type.replaceAll("_", " ");
+  const key = `event.${type}`;
+  const name = t(key as Key);
+  return name === key ? type.replaceAll("_", " ") : name;
 }
 
 function Changed({ event }: { readonly event: SessionEvent }): JSX.Element {

@@ -38,9 +38,12 @@ export function ConsentPage({ id }: { readonly id: string }): JSX.Element {
       <Loaded query={useQuery(consentQuery(id))}>
         {(record) =>
           record === null ? (
-            <EmptyState icon="document" title={t("consent.none")}>
-              {t("consent.none.body")}
-            </EmptyState>
+            <>
+              <h1 className="visually-hidden">{t("consent.page")}</h1>
+              <EmptyState icon="document" title={t("consent.none")}>
+                {t("consent.none.body")}
+              </EmptyState>
+            </>
           ) : (
             <Sheet record={record} />
           )

@@ -52,18 +52,19 @@ export function SummaryTab({ study }: { readonly study: StudyDetail }): JSX.Elem
       <p className={classes.lead}>{t("summary.lead")}</p>
       <div className={page.toolbar}>
         <KindFilter kind={kind} onChange={setKind} />
-        {query.data !== undefined && (
-          <span>
-            {sessionCounts(query.data, t)}
-            {` · ${t("summary.asOf", { when: dateTime(query.data.drawn_at, language) })}`}
-          </span>
-        )}
         <HandOn study={study} kind={kind} />
       </div>
+      <p className={classes.state} aria-live="polite">
+        {query.data === undefined
+          ? "…"
+          : `${sessionCounts(query.data, t)} · ${t("summary.asOf", {
+              when: dateTime(query.data.drawn_at, language),
+            })}`}
+      </p>
       <Loaded query={query}>
         {(dashboard) =>
           dashboard.n_completed - dashboard.n_not_valid === 0 ? (
-            <Nobody study={study} kind={kind} />
+            <Nobody study={study} kind={kind} excluded={dashboard.n_not_valid} />
           ) : (
             <Summary study={study} kind={kind} dashboard={dashboard} />
           )
@@ -102,19 +103,24 @@ function HandOn({ study, kind }: OfStudy): JSX.Element {
   );
 }
 
-function Nobody({ study, kind }: OfStudy): JSX.Element {
+interface NobodyProps extends OfStudy {
+  /** How many sessions were completed and do not count. */
+  readonly excluded: number;
+}
+
+function Nobody({ study, kind, excluded }: NobodyProps): JSX.Element {
   const { t } = useTexts();
   return (
     <EmptyState
       icon="chart"
-      title={t("dashboard.empty.title")}
+      title={t(excluded > 0 ? "summary.none" : "dashboard.empty.title")}
       action={
         <Button component={Link} href={`/studies/${study.key}/sessions?kind=${kind}`}>
           {t("study.tab.sessions")}
         </Button>
       }
     >
-      {t("dashboard.empty.body")}
+      {t(excluded > 0 ? "summary.none.body" : "dashboard.empty.body", { count: excluded })}
     </EmptyState>
   );
 }

@@ -67,6 +67,11 @@ export const analysisEn = {
   "summary.more": "All figures",
   "summary.excluded": "Who is left out",
   "summary.level": "α = {{alpha}}, {{study}}, version {{version}}",
+  "summary.none": "No session counts yet",
+  "summary.none.body_one":
+    "{{count}} session is completed, but does not meet what the study requires. Its page says why.",
+  "summary.none.body_other":
+    "{{count}} sessions are completed, but do not meet what the study requires. Their pages say why.",
   "summary.label": "Summary",
   "summary.n": "Participants",
   "summary.ofPlanned": "of {{planned}} planned",
@@ -165,6 +170,11 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "summary.more": "Alle Abbildungen",
   "summary.excluded": "Wer nicht dabei ist",
   "summary.level": "α = {{alpha}}, {{study}}, Version {{version}}",
+  "summary.none": "Noch zählt keine Sitzung",
+  "summary.none.body_one":
+    "{{count}} Sitzung ist abgeschlossen, erfüllt aber nicht, was die Studie verlangt. Ihre Seite sagt, warum.",
+  "summary.none.body_other":
+    "{{count}} Sitzungen sind abgeschlossen, erfüllen aber nicht, was die Studie verlangt. Ihre Seiten sagen, warum.",
   "summary.label": "Zusammenfassung",
   "summary.n": "Teilnehmende",
   "summary.ofPlanned": "von {{planned}} geplanten",
