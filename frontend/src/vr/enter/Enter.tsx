@@ -42,7 +42,7 @@ export function Enter(): JSX.Element {
       key={pairing.token}
       pairing={pairing}
       onUnpaired={(isRefused) => {
-        forgetPairing();
+        forgetPairing(isRefused);
         setDisconnected(isRefused);
         setPairing(null);
       }}
@@ -246,7 +246,7 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
       <div className={classes.state}>
         <VisitNotices visit={visit} />
         <SupportNotice support={support} />
-        {!visit.isReady && (
+        {!visit.isReady && failure?.code !== "journal_in_use" && (
           <Button variant="subtle" onClick={() => onUnpaired(false)}>
             {t("enter.disconnect")}
           </Button>
@@ -256,6 +256,9 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
   );
 }
 
+/** Failures that people meet, told in the page's language; all others in the server's words. */
+const IN_OWN_WORDS = new Set(["foreign_journal", "withdrawn", "journal_in_use", "taken_over"]);
+
 function VisitNotices({ visit }: { readonly visit: VisitState }): JSX.Element {
   const { t } = useTexts();
   const { failure, problem, isReady, isConnected, vr, isOver, isUnloaded } = visit;
@@ -264,7 +267,14 @@ function VisitNotices({ visit }: { readonly visit: VisitState }): JSX.Element {
       {failure?.code === "foreign_journal" && (
         <Notice tone="bad" title={t("enter.foreign")} remedy={t("enter.foreign.remedy")} />
       )}
-      {failure !== null && failure.code !== "foreign_journal" && (
+      {failure?.code === "withdrawn" && <Notice tone="info">{t("enter.withdrawn")}</Notice>}
+      {failure?.code === "journal_in_use" && (
+        <Notice tone="warn" title={t("enter.inUse")} remedy={t("enter.inUse.remedy")} />
+      )}
+      {failure?.code === "taken_over" && (
+        <Notice tone="warn" title={t("enter.takenOver")} remedy={t("enter.takenOver.remedy")} />
+      )}
+      {failure !== null && !IN_OWN_WORDS.has(failure.code) && (
         <Notice tone="bad" title={t("enter.stopped")} remedy={failure.remedy}>
           {failure.message}
         </Notice>

@@ -13,7 +13,8 @@ import {
   type Welcome,
 } from "../telemetry";
 import { DesktopSource } from "../tracking";
-import type { Pairing } from "./pairing";
+import { discardForms, discardSession, sendEarlier } from "./earlier";
+import { forgetPairing, type Pairing } from "./pairing";
 
 /** `left`: VR was shown and is not any more. */
 export type VrState = "not_yet" | "entering" | "shown" | "left";
@@ -62,15 +63,33 @@ export function useVisit(pairing: Pairing): VisitState {
     else setProblem(error instanceof Error ? error.message : String(error));
   }, []);
 
+  const isWithdrawn = (status?.failure ?? failure)?.code === "withdrawn";
+  useEffect(() => {
+    if (!isWithdrawn) return;
+    setOver(true);
+    forgetPairing(true);
+    const discard = async () => {
+      // Closed first: a journal that is open cannot be deleted.
+      await telemetry?.close();
+      await discardSession(pairing.sessionId);
+    };
+    void discard().catch(() => undefined);
+  }, [isWithdrawn, telemetry, pairing]);
+
   useEffect(() => {
     const leaving = new AbortController();
     const { signal } = leaving;
     let client: TelemetryClient | null = null;
     const open = async () => {
+      void sendEarlier(pairing.sessionId, optionsFor).catch(() => undefined);
       client = await openTelemetryInWorker(optionsFor(pairing), { onStatus: setStatus, signal });
       if (signal.aborted) return client.close();
       const follow = (state: HeadsetState) => {
         setOver(OVER.has(state.status));
+        if (state.status === "withdrawn") {
+          forgetPairing(true);
+          void discardForms(pairing.sessionId).catch(() => undefined);
+        }
         setBetween(isBetweenSteps(state));
       };
       client.onState(follow);

@@ -24,6 +24,13 @@ export const de: Readonly<Record<keyof typeof en, string>> = {
   "enter.overBody": "Sie können die VR-Brille abnehmen. Vielen Dank für Ihre Teilnahme.",
   "enter.failed": "VR konnte nicht gestartet werden",
   "enter.stopped": "Diese VR-Brille hat angehalten",
+  "enter.withdrawn":
+    "Die Teilnahme wurde beendet. Was diese VR-Brille noch von der Sitzung hatte, wurde gelöscht.",
+  "enter.inUse": "Diese Studie ist in einem anderen Tab offen",
+  "enter.inUse.remedy": "Schließen Sie den anderen Tab und laden Sie diese Seite neu.",
+  "enter.takenOver": "Eine andere Seite dieser VR-Brille setzt die Sitzung fort",
+  "enter.takenOver.remedy":
+    "Machen Sie dort weiter. Um hier weiterzumachen, laden Sie diese Seite neu.",
   "enter.foreign": "Dieses Headset hat noch Aufzeichnungen einer anderen Sitzung",
   "enter.foreign.remedy":
     "Sie sind noch nicht beim Studienrechner. Koppeln Sie das Headset zuerst wieder mit jener Sitzung: Sie werden gesendet, sobald es verbunden ist. Verwenden Sie danach den Code dieser Sitzung.",

@@ -22,6 +22,12 @@ export const en = {
   "enter.overBody": "You can take the headset off. Thank you for taking part.",
   "enter.failed": "VR could not be started",
   "enter.stopped": "This headset has stopped",
+  "enter.withdrawn":
+    "The participant has withdrawn. What this headset still had of the session was deleted.",
+  "enter.inUse": "This study is open in another tab",
+  "enter.inUse.remedy": "Close the other tab, then reload this page.",
+  "enter.takenOver": "Another page of this headset goes on with the session",
+  "enter.takenOver.remedy": "Continue there. To go on here, reload this page.",
   "enter.foreign": "This headset still keeps recordings of another session",
   "enter.foreign.remedy":
     "They have not reached the study computer. Pair the headset with that session again first: they are sent as soon as it is connected. Then use the code of this session.",
