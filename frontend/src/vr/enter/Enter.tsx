@@ -41,6 +41,7 @@ export function Enter(): JSX.Element {
     <VisitPage
       key={pairing.token}
       pairing={pairing}
+      onCode={pairingByCode.mutate}
       onUnpaired={(isRefused) => {
         forgetPairing(isRefused);
         setDisconnected(isRefused);
@@ -133,17 +134,7 @@ function PairingPage({ pairing, isDisconnected }: PairingPageProps): JSX.Element
         <Title order={1}>{t("pair.title")}</Title>
         <p className={classes.lead}>{t("pair.lead")}</p>
       </div>
-      <CodeEntry
-        characters={characters}
-        disabled={isPending}
-        label={t("pair.code")}
-        deleteLabel={t("pair.delete")}
-        onCharacters={setCharacters}
-        onCode={send}
-      />
-      <NameField />
       <div className={classes.state}>
-        {isPending && <Waiting text={t("pair.connecting")} />}
         {error !== null && (
           <Failure
             error={error}
@@ -156,6 +147,18 @@ function PairingPage({ pairing, isDisconnected }: PairingPageProps): JSX.Element
             {t("pair.ended.body")}
           </Notice>
         )}
+      </div>
+      <CodeEntry
+        characters={characters}
+        disabled={isPending}
+        label={t("pair.code")}
+        deleteLabel={t("pair.delete")}
+        onCharacters={setCharacters}
+        onCode={send}
+      />
+      {isPending && <Waiting text={t("pair.connecting")} />}
+      <NameField />
+      <div className={classes.state}>
         <SupportNotice support={support} />
       </div>
     </Frame>
@@ -166,6 +169,8 @@ function PairingPage({ pairing, isDisconnected }: PairingPageProps): JSX.Element
 
 interface VisitPageProps {
   readonly pairing: Pairing;
+  /** The code of the next session was entered. */
+  readonly onCode: (code: string) => void;
   /** `isRefused`: the server no longer knows this headset; else somebody asked for another code. */
   readonly onUnpaired: (isRefused: boolean) => void;
 }
@@ -178,7 +183,7 @@ const UNPAIRED = new Set([
   "address",
 ]);
 
-function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
+function VisitPage({ pairing, onCode, onUnpaired }: VisitPageProps): JSX.Element {
   const { t, language, setLanguage } = useTexts();
   const support = useSupport();
   const visit = useVisit(pairing);
@@ -214,6 +219,7 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
         <Title order={1}>{visit.isOver ? t("enter.over") : t("enter.title")}</Title>
         <p className={classes.lead}>{visit.isOver ? t("enter.overBody") : t("enter.lead")}</p>
       </div>
+      {(visit.isOver || failure?.code === "withdrawn") && <NextCode onCode={onCode} />}
       {!visit.isOver && (
         <Button
           className={classes.enter ?? ""}
@@ -253,6 +259,25 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
         )}
       </div>
     </Frame>
+  );
+}
+
+/** After the end: the code of the next session, without a way around. */
+function NextCode({ onCode }: { readonly onCode: (code: string) => void }): JSX.Element {
+  const { t } = useTexts();
+  const [characters, setCharacters] = useState("");
+  return (
+    <section className={classes.next} aria-label={t("enter.next")}>
+      <p className={classes.lead}>{t("enter.next")}</p>
+      <CodeEntry
+        characters={characters}
+        disabled={false}
+        label={t("pair.code")}
+        deleteLabel={t("pair.delete")}
+        onCharacters={setCharacters}
+        onCode={onCode}
+      />
+    </section>
   );
 }
 

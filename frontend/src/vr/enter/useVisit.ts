@@ -29,6 +29,8 @@ export interface VisitState {
   /** Why the connection has ended for good. */
   readonly failure: Failure | null;
   readonly vr: VrState;
+  /** The pictures a second on this screen, where they are too few; else null. */
+  readonly slowHz: number | null;
   /** Why VR could not be shown. */
   readonly problem: string | null;
   /** A part of this page could not be loaded; the page says why, and what to do. */
@@ -55,6 +57,7 @@ export function useVisit(pairing: Pairing): VisitState {
   const [isBetween, setBetween] = useState(false);
   const [vrState, setVrState] = useState<VrState>("not_yet");
   const [problem, setProblem] = useState<string | null>(null);
+  const [slowHz, setSlowHz] = useState<number | null>(null);
   const [isPartMissing, setUnloaded] = useState(false);
   const vr = useRef<Vr | null>(null);
   const fail = useCallback((error: unknown) => {
@@ -134,7 +137,7 @@ export function useVisit(pairing: Pairing): VisitState {
     (host: HTMLElement) => {
       const statureM = telemetry?.state.participant.stature_m ?? USUAL_STATURE_M;
       const source = new DesktopSource(statureM);
-      vr.current?.showOnScreen(host, source);
+      vr.current?.showOnScreen(host, source, setSlowHz);
       setVrState("shown");
       return listenTo(host, source);
     },
@@ -149,6 +152,7 @@ export function useVisit(pairing: Pairing): VisitState {
     isBetween,
     failure: status?.failure ?? failure,
     vr: vrState,
+    slowHz,
     problem,
     isUnloaded: isPartMissing,
     enter,

@@ -171,6 +171,11 @@ export class VisitPanels {
   }
 
   /** Let the panel stand in front of the wearer again. */
+  /** The study is shown in a window; `halfViewRad`: from its middle to its edge. */
+  fitWindow(halfViewRad: number): void {
+    this.#panels.halfViewRad = halfViewRad;
+  }
+
   recentre(): void {
     this.#panels.recentre();
   }
