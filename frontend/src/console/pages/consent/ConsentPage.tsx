@@ -38,12 +38,9 @@ export function ConsentPage({ id }: { readonly id: string }): JSX.Element {
       <Loaded query={useQuery(consentQuery(id))}>
         {(record) =>
           record === null ? (
-            <>
-              <h1 className="visually-hidden">{t("consent.page")}</h1>
-              <EmptyState icon="document" title={t("consent.none")}>
-                {t("consent.none.body")}
-              </EmptyState>
-            </>
+            <EmptyState icon="document" title={t("consent.none")} isPage>
+              {t("consent.none.body")}
+            </EmptyState>
           ) : (
             <Sheet record={record} />
           )
