@@ -19,6 +19,7 @@ import { stepName } from "../../steps";
 import { Loaded } from "../../ui/Loaded";
 import { Order } from "../../ui/Order";
 import { useTitle } from "../../ui/page";
+import { ScrollBox } from "../../ui/tables";
 import classes from "./OutageSheet.module.css";
 
 export function OutageSheet({ id }: { readonly id: string }): JSX.Element {
@@ -125,31 +126,33 @@ function Steps({ session }: { readonly session: SessionView }): JSX.Element {
   return (
     <section className={classes.steps}>
       <h2>{t("outage.steps")}</h2>
-      <table>
-        <thead>
-          <tr>
-            <th scope="col">{t("outage.done")}</th>
-            <th scope="col">{t("outage.step")}</th>
-            <th scope="col">{t("outage.time")}</th>
-            <th scope="col">{t("outage.note")}</th>
-          </tr>
-        </thead>
-        {groupSteps(session.steps).map(({ block, number, latency: added, steps }) => (
-          <tbody key={steps[0]?.index}>
-            {block !== null && (
-              <tr>
-                <th scope="rowgroup" colSpan={4}>
-                  {t("outage.block", { number })}
-                  {added !== null && ` · ${latency(milliseconds(added))}`}
-                </th>
-              </tr>
-            )}
-            {steps.map((step) => (
-              <Line key={step.index} step={step} />
-            ))}
-          </tbody>
-        ))}
-      </table>
+      <ScrollBox label={t("outage.steps")}>
+        <table>
+          <thead>
+            <tr>
+              <th scope="col">{t("outage.done")}</th>
+              <th scope="col">{t("outage.step")}</th>
+              <th scope="col">{t("outage.time")}</th>
+              <th scope="col">{t("outage.note")}</th>
+            </tr>
+          </thead>
+          {groupSteps(session.steps).map(({ block, number, latency: added, steps }) => (
+            <tbody key={steps[0]?.index}>
+              {block !== null && (
+                <tr>
+                  <th scope="rowgroup" colSpan={4}>
+                    {t("outage.block", { number })}
+                    {added !== null && ` · ${latency(milliseconds(added))}`}
+                  </th>
+                </tr>
+              )}
+              {steps.map((step) => (
+                <Line key={step.index} step={step} />
+              ))}
+            </tbody>
+          ))}
+        </table>
+      </ScrollBox>
     </section>
   );
 }
