@@ -29,6 +29,7 @@ from app.features.movement.walking import FitQueue, PredictionQueue
 from app.features.people.accounts import RefusedSignIns, ensure_admin
 from app.features.record.demo import DemoRunner
 from app.features.record.lab_trackers import LabTrackers
+from app.features.record.road import Roads
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
 from app.features.record.tryout import TryoutRunner
 from app.features.results.analysis import Drawings
@@ -63,6 +64,7 @@ PARTS: tuple[PartMaker, ...] = (
     LiveTracking,
     Performers,
     LabTrackers,
+    Roads,
     ExportQueue.of,
     StorageMeter.of,
     TryoutRunner.of,

@@ -41,6 +41,7 @@ from app.features.record.ledger.endpoints import router as participants
 from app.features.record.poses.endpoints import router as poses
 from app.features.record.preflight.endpoints import router as preflight
 from app.features.record.receipts.endpoints import router as receipts
+from app.features.record.road.endpoints import router as road
 from app.features.record.self_tests.endpoints import router as self_tests
 from app.features.record.suggestions.endpoints import router as suggestions
 from app.features.record.tablet.endpoints import calls
@@ -123,7 +124,7 @@ def _routes() -> tuple[BaseRoute, ...]:
         *(tablet, sessions, watching),
         *(accounts, people, audit, studies, instruments, participants),
         *(devices, calls, headset, headset_forms, alarms, suggestions, calibrations),
-        *(self_tests, lab_trackers),
+        *(self_tests, lab_trackers, road),
         *(analysis, exports, receipts, rights, network, captures, on_avatars, avatars),
         *(
             humanoids,

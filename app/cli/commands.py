@@ -62,16 +62,12 @@ def reembody(
 def score(
     answers: Annotated[Path, typer.Argument(help="CSV with item columns; others are ids.")],
     instrument: Annotated[str, typer.Option(help="Key of the instrument, or its file.")],
-    missing: Annotated[
-        list[str] | None,
-        typer.Option(help="A code of a missing answer besides empty and NA, as -99; repeatable."),
-    ] = None,
 ) -> None:
     """Score a table of answers; write ids and scores as CSV to standard output."""
     from app.cli.scoring import score_file
 
     with reported(ValueError, OSError):
-        scored = score_file(answers, instrument, missing or ())
+        scored = score_file(answers, instrument)
     sys.stdout.write(scored.text)
     for note in scored.notes:
         warn(note)
@@ -182,7 +178,9 @@ def rehearse(
     seed: Annotated[
         int, typer.Option(help="Random seed of the first participant; each next one adds 1.")
     ] = 1,
-    study: Annotated[str, typer.Option(help="Key of the study.")] = "reembodiment-latency",
+    study: Annotated[
+        str, typer.Option(help="Key of the study, or of a template.")
+    ] = "reembodiment-latency",
     data: Annotated[
         Path | None, typer.Option(help="Keep the started server's data in this folder.")
     ] = None,

@@ -23,7 +23,14 @@ from httpx2 import Client, HTTPError
 from app.protocol import BOX_KINDS, COUNTED_KINDS, STEP_KINDS, UNCOUNTED_KINDS
 from app.rehearsal.body import make_person
 from app.rehearsal.headset import WITHDRAWN
-from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, Visit, rehearse, visit_of
+from app.rehearsal.rehearse import (
+    RehearsalPlan,
+    RehearsalReport,
+    Visit,
+    rehearse,
+    store_template,
+    visit_of,
+)
 
 T = TypeVar("T")
 START_TIMEOUT_S = 60.0
@@ -58,6 +65,8 @@ def run_rehearsal(
     make_person(np.random.default_rng(plan.seed), plan.capture)
     reports: list[RehearsalReport] = []
     with _server_for(plan, data) as reachable:
+        if not plan.url:
+            _run(store_template(reachable))
         _say(_expected(_run(visit_of(reachable)), plan.speed, participants))
         plans = _plans(reachable, participants)
         try:
@@ -230,7 +239,24 @@ def report_text(report: RehearsalReport) -> str:
         + ("  voided" if phase["status"] == "voided" else "")
         for phase in phases
     ]
+    lines += [f"  {_crossing(one)}" for one in report.crossings]
     return "\n".join(lines)
+
+
+def _crossing(one: dict[str, Any]) -> str:
+    """Return a line for one crossing of the study's road."""
+    if one["steps_on_s"] is None:
+        return f"phase {one['phase_id']}: not on the carriageway, waited {one['waited_s']:.1f} s"
+    gap, closest = one["gap_accepted_s"], one["closest_m"]
+    return (
+        f"phase {one['phase_id']}, crossing {one['number']}: on at {one['steps_on_s']:.1f} s,"
+        f" waited {one['waited_s']:.1f} s,"
+        f" gap {'none coming' if gap is None else f'{gap:.1f} s'},"
+        f" {len(one['gaps_refused_s'])} refused,"
+        f" closest {'-' if closest is None else f'{closest:.1f} m'}"
+        + ("" if one["is_across"] else ", not across")
+        + ("" if one["collision_car"] is None else ", COLLISION")
+    )
 
 
 def _speed(report: RehearsalReport) -> str:

@@ -12,6 +12,7 @@ from app.client.http import (
     submit_form,
 )
 from app.client.journal import Journal
+from app.client.road import RoadClient
 from app.client.telemetry import TelemetryClient, TelemetryError
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "Journal",
     "Json",
     "Operator",
+    "RoadClient",
     "ServerRefusedError",
     "Tablet",
     "TelemetryClient",

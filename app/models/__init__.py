@@ -26,6 +26,7 @@ from app.models.ledger import KINDS, Ledger, LedgerSlot, Participant, SlotAttemp
 from app.models.quality import AlarmRow, PhaseLatency, PhaseQuality
 from app.models.questionnaires import Answer, ScoreValue, Submission
 from app.models.rights import AnswerCorrection, CopyMade, Erasure
+from app.models.road import RoadChunk, RoadCrossing, RoadRun
 from app.models.sessions import Phase, SessionContent, SessionEvent, StudySession
 from app.models.studies import InstrumentVersion, Study, StudyVersion, Suggestion
 from app.models.telemetry import (
@@ -87,6 +88,9 @@ __all__ = [
     "Phase",
     "PhaseLatency",
     "PhaseQuality",
+    "RoadChunk",
+    "RoadCrossing",
+    "RoadRun",
     "SavedJointMap",
     "ScoreValue",
     "SessionContent",

@@ -131,6 +131,8 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/trackers/recordings": DESIGNERS,
     "POST /api/trackers/recordings/{recording_id}/capture": DESIGNERS,
     "DELETE /api/trackers/recordings/{recording_id}": DESIGNERS,
+    "GET /api/sessions/{session_id}/road": LAB,
+    "GET /api/sessions/{session_id}/road/{run_id}": LAB,
     "GET /api/sessions/{session_id}/trackers": LAB,
     "PUT /api/sessions/{session_id}/trackers": RUNNERS,
     # Walking: scenes, walks, and the models that are fitted to them.
@@ -238,6 +240,7 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/vr/self-tests": HEADSET,
     "WEBSOCKET /api/vr/self-tests/storage": HEADSET,
     "WEBSOCKET /api/vr/stream": HEADSET,
+    "WEBSOCKET /api/vr/road": HEADSET,
     "WEBSOCKET /api/vr/trackers": HEADSET,
 }
 

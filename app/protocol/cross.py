@@ -55,6 +55,7 @@ def cross_problems(
     yield from _references(tree, instruments, languages)
     yield from _titles(tree, languages)
     yield from _places(tree)
+    yield from _road(tree)
     yield from _rows(tree)
     yield from _sequences(tree)
     yield from safety_problems(tree, instruments)
@@ -106,6 +107,9 @@ def _steps(tree: dict[str, Plain]) -> Iterator[tuple[Path, dict[str, Plain]]]:
         for index, step in enumerate(_list(steps)):
             if isinstance(step, dict):
                 yield (*path, index), step
+    crossing = _dict(procedure.get("block")).get("crossing")
+    if isinstance(crossing, dict):
+        yield ("procedure", "block", "crossing"), crossing
 
 
 def _references(
@@ -187,6 +191,27 @@ def _places(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
                 sorted(used),
                 f"Describe the boxes under tasks.{limb}, or remove the phase.",
             )
+
+
+def _road(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
+    """Yield a problem if there is a crossing without a road, or a road that nobody crosses."""
+    has_crossing = _dict(_dict(tree.get("procedure")).get("block")).get("crossing") is not None
+    if has_crossing and tree.get("road") is None:
+        yield DefinitionProblem(
+            ("road",),
+            "The procedure has a crossing, but the road is missing.",
+            None,
+            "a road with its partners",
+            "Describe it under road, or remove procedure.block.crossing.",
+        )
+    if not has_crossing and tree.get("road") is not None:
+        yield DefinitionProblem(
+            ("road",),
+            "The study has a road, but no block has a crossing.",
+            None,
+            "left out",
+            "Add procedure.block.crossing, or remove the road.",
+        )
 
 
 def _rows(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:

@@ -15,6 +15,7 @@ from app.protocol.errors import PlanError
 from app.protocol.procedure import (
     ClosingStep,
     ConsentStep,
+    CrossingPhase,
     FormPlace,
     FormStep,
     SetupStep,
@@ -38,9 +39,10 @@ class Step:
     "block2.hand.karas2020", "block2.fms"). `block` counts from 1 and, like `condition`, is None
     outside the blocks. `latency_ms` is also set for free movement and practice. `body`: the body
     that the condition prescribes, None for that of the avatar's configuration. `text` is the key
-    of a text of the study. `until_completions`: a practice ends early after this many tasks.
-    `consent`: the requirements of a consent step in addition to its text. `avatar_changes`: how a
-    timed step changes the physics avatar while the step lasts. `forms`: where a form is answered.
+    of a text of the study. `until_completions`: the phase ends early after this many tasks or
+    crossings. `consent`: the requirements of a consent step in addition to its text.
+    `avatar_changes`: how a timed step changes the physics avatar while the step lasts. `forms`:
+    where a form is answered.
     """
 
     index: int
@@ -96,7 +98,9 @@ def compile_plan(
         if protocol.procedure.block.limb_order == "alternate" and turned:
             phases = phases[::-1]
         condition = protocol.condition(key)
-        steps.extend(_block(block, condition, phases))
+        crossing = protocol.procedure.block.crossing
+        first = () if crossing is None else (crossing,)
+        steps.extend(_block(block, condition, (*first, *phases)))
         steps.extend(
             replace(
                 _simple(step),
@@ -138,24 +142,30 @@ def _title(kind: StepKind, limb: Limb | None, given: Text | None) -> Text:
     return STEP_KINDS[kind].title(limb) if given is None else given
 
 
-def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Iterator[Step]:
+def _block(
+    block: int, condition: Condition, phases: Sequence[TaskPhase | CrossingPhase]
+) -> Iterator[Step]:
     for phase in phases:
-        key = f"block{block}.{phase.limb}"
+        kind: StepKind = phase.kind if isinstance(phase, CrossingPhase) else "task"
+        limb = None if isinstance(phase, CrossingPhase) else phase.limb
+        crossings = phase.crossings if isinstance(phase, CrossingPhase) else None
+        key = f"block{block}.{STEP_KINDS[kind].key_of_phase(limb)}"
         task = Step(
             0,
             key,
-            "task",
-            _title("task", phase.limb, phase.title),
+            kind,
+            _title(kind, limb, phase.title),
             block=block,
             condition=condition.key,
             latency_ms=condition.latency_ms,
             body=condition.body,
-            limb=phase.limb,
+            limb=limb,
             preparation_s=phase.preparation_s,
             duration_s=phase.duration_s,
             freeze_s=phase.freeze_s,
             text=phase.text,
             avatar_changes=phase.avatar_changes,
+            until_completions=crossings,
         )
         yield task
         yield replace(
@@ -170,6 +180,7 @@ def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Ite
             forms=phase.forms,
             text=None,
             avatar_changes=None,
+            until_completions=None,
         )
 
 

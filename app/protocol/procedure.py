@@ -5,13 +5,14 @@ questionnaire. `text` is the key of one of the study's texts; `title` replaces t
 title.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from app.protocol.avatar_changes import AvatarChanges
 from app.protocol.common import Duration, Key, Pause, Strict, Text, refusal
 from app.protocol.conditions import LatencyMs
+from app.protocol.step_kinds import StepKind
 from app.science.tasks import Limb
 
 OfThePhase = Annotated[AvatarChanges | None, Field(exclude_if=lambda value: value is None)]
@@ -180,17 +181,52 @@ def _each_limb_once(phases: tuple[TaskPhase, ...]) -> tuple[TaskPhase, ...]:
     return phases
 
 
+class CrossingPhase(Strict):
+    """The participant crosses the study's road, there and back, `crossings` times in all.
+
+    It ends after that many crossings, or when `duration_s` of active time are over. Its other
+    fields are those of `TaskPhase`.
+    """
+
+    kind: ClassVar[StepKind] = "road_crossing"
+    crossings: Annotated[int, Field(ge=1, le=100)] = 1
+    preparation_s: Pause
+    duration_s: Duration
+    freeze_s: Pause
+    questionnaire: Key
+    forms: OfTheForm = "tablet"
+    text: Key | None = None
+    title: Text | None = None
+    questionnaire_title: Text | None = None
+    avatar_changes: OfThePhase = None
+
+
 class Block(Strict):
     """The phases of one condition.
+
+    `crossing`: the participant first crosses the study's road; `phases` may then be empty.
 
     `limb_order`: "fixed" as listed; "alternate" reverses the order in every other block. `after`:
     forms answered at the end of every block, such as a sickness scale.
     """
 
     limb_order: Literal["fixed", "alternate"]
-    phases: Annotated[tuple[TaskPhase, ...], Field(min_length=1), AfterValidator(_each_limb_once)]
+    phases: Annotated[tuple[TaskPhase, ...], AfterValidator(_each_limb_once)]
+    crossing: Annotated[CrossingPhase | None, Field(exclude_if=lambda value: value is None)] = None
     # Left out of the content if empty, so that the hashes of other studies stay the same.
     after: Annotated[tuple[FormStep, ...], Field(exclude_if=lambda steps: not steps)] = ()
+
+    @model_validator(mode="after")
+    def _has_a_phase(self) -> Self:
+        if not self.phases and self.crossing is None:
+            raise refusal(
+                "A block has no phase.",
+                value=[],
+                valid="at least one task, or a crossing",
+                remedy="Add a phase with its limb, or a crossing.",
+                at=("phases",),
+            )
+        return self
 
 
 class Procedure(Strict):

@@ -189,6 +189,7 @@ def _instruments_asked(tree: Mapping[str, Plain]) -> tuple[set[str], set[str]]:
     block = _dict(procedure.get("block"))
     early = [
         *(_dict(step).get("instrument") for step in _list(procedure.get("before"))),
+        _dict(block.get("crossing")).get("questionnaire"),
         *(_dict(phase).get("questionnaire") for phase in _list(block.get("phases"))),
         *(_dict(step).get("instrument") for step in _list(block.get("after"))),
     ]

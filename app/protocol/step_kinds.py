@@ -26,6 +26,7 @@ StepKind = Literal[
     "free_roam",
     "practice",
     "task",
+    "road_crossing",
     "questionnaire",
     "debrief",
 ]
@@ -72,6 +73,7 @@ class StepKindSpec:
         counts: whether its phases are the study's data. All others are recorded, but in no figure
             or test.
         needs_body: whether it must come after the step in which the participant gets a body.
+        has_road: whether its phases are on the study's road.
         records_movement: whether movement is recorded in it, once the participant has a body.
     """
 
@@ -87,6 +89,7 @@ class StepKindSpec:
     phase_key: str | None = None
     counts: bool = False
     needs_body: bool = False
+    has_road: bool = False
     records_movement: bool = True
 
     @property
@@ -122,6 +125,7 @@ _TO_TRY = Words(
 )
 _BEGIN_PRACTICE = Words("Begin practice", "Übung beginnen")
 _FREE_MOVEMENT = Words("Free movement", "Freies Bewegen")
+_CROSSING = Words("Crossing the road", "Überqueren der Straße")
 
 _TABLE = (
     StepKindSpec(
@@ -250,6 +254,29 @@ _TABLE = (
         },
     ),
     StepKindSpec(
+        key="road_crossing",
+        name=_CROSSING,
+        icon="walk",
+        command="begin_phase",
+        phase_key="road_crossing",
+        counts=True,
+        needs_body=True,
+        has_road=True,
+        phases={
+            None: PhaseWords(
+                title=_CROSSING,
+                in_a_sentence=Words("crossing the road", "Überqueren der Straße"),
+                begin=Words("Begin the crossing", "Überqueren beginnen"),
+                guidance=Words(
+                    "Make sure that the participant stands on the start square, that the way "
+                    "ahead is free, and that somebody walks beside them; then begin.",
+                    "Achten Sie darauf, dass die Person auf dem Startquadrat steht, der Weg nach "
+                    "vorn frei ist und jemand neben ihr geht; dann beginnen Sie.",
+                ),
+            ),
+        },
+    ),
+    StepKindSpec(
         key="questionnaire",
         name=Words("Questionnaire", "Fragebogen"),
         icon="form",
@@ -285,6 +312,8 @@ COUNTED_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.cou
 """Kinds of phases that count as the study's data."""
 BOX_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.has_boxes)
 """Kinds of phases in which a limb reaches for the boxes of a task."""
+ROAD_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.has_road)
+"""Kinds of phases in which the participant crosses the study's road."""
 UNCOUNTED_KINDS: tuple[StepKind, ...] = tuple(
     one.key for one in _TABLE if one.family == "timed" and not one.counts
 )

@@ -10,6 +10,7 @@ from app.protocol.common import Key, Provenance, Strict, Text, canonical_json, r
 from app.protocol.conditions import Condition, Conditions, Orders
 from app.protocol.preregistration import Preregistration
 from app.protocol.procedure import FormStep, Procedure
+from app.protocol.road_scenes import StudyRoad
 from app.protocol.safety import Safety
 from app.protocol.simulation import Simulation
 from app.protocol.tasks import Appearance, Tasks
@@ -97,7 +98,8 @@ class StudyProtocol(Strict):
     """A study: conditions, orders, procedure, task places, appearance and texts.
 
     `avatar`: the remote avatar repeats the participant's movement (`delayed_copy`), or follows it
-    by forces and collides (`physics`), as configured by `avatar_configuration`.
+    by forces and collides (`physics`), as configured by `avatar_configuration`. `road`: what
+    participants cross, if the procedure has that.
     """
 
     key: Annotated[
@@ -128,6 +130,7 @@ class StudyProtocol(Strict):
     preregistration: Annotated[
         Preregistration | None, Field(exclude_if=lambda value: value is None)
     ] = None
+    road: Annotated[StudyRoad | None, Field(exclude_if=lambda value: value is None)] = None
     simulation: Annotated[Simulation | None, Field(exclude_if=lambda value: value is None)] = None
 
     def condition(self, key: str) -> Condition:
@@ -140,7 +143,8 @@ class StudyProtocol(Strict):
         steps = (*self.procedure.before, *self.procedure.after)
         forms = [step.instrument for step in steps if isinstance(step, FormStep)]
         block = self.procedure.block
-        after_tasks = [phase.questionnaire for phase in block.phases]
+        crossing = [] if block.crossing is None else [block.crossing.questionnaire]
+        after_tasks = [*crossing, *(phase.questionnaire for phase in block.phases)]
         after_block = [step.instrument for step in block.after]
         return tuple(dict.fromkeys([*forms, *after_tasks, *after_block]))
 

@@ -12,7 +12,7 @@ from pydantic import Field, StringConstraints, model_validator
 
 from app.protocol.common import Key, Strict, refusal
 from app.protocol.source import Path, Plain
-from app.protocol.step_kinds import PHASES, STEP_KINDS
+from app.protocol.step_kinds import PHASES, ROAD_KINDS, STEP_KINDS, StepKind
 from app.science.instruments import DefinitionProblem
 
 _MAX_TOLERANCE_MS = 10_000.0
@@ -168,6 +168,10 @@ def _durations(tree: Mapping[str, Plain]) -> dict[str, float | None]:
             phases.append((key, step.get("duration_s"), early))
     block = [_dict(phase) for phase in _list(_dict(procedure.get("block")).get("phases"))]
     phases += [(str(phase.get("limb")), phase.get("duration_s"), False) for phase in block]
+    crossing = _dict(procedure.get("block")).get("crossing")
+    if isinstance(crossing, dict):
+        # It may end early, after the last crossing.
+        phases += [(key, None, True) for kind in ROAD_KINDS if (key := _phase_key(kind))]
     if len({str(phase.get("limb")) for phase in block}) < len(block):
         # A duplicate limb is reported elsewhere; accept both, because which one is missing is
         # unknown.
@@ -180,12 +184,17 @@ def _durations(tree: Mapping[str, Plain]) -> dict[str, float | None]:
     return found
 
 
+def _phase_key(kind: StepKind) -> str | None:
+    return STEP_KINDS[kind].key_of_phase(None)
+
+
 def _forms(tree: Mapping[str, Plain]) -> list[str]:
     """Return every instrument that the study asks, in the order of the procedure."""
     procedure = _dict(tree.get("procedure"))
     block = _dict(procedure.get("block"))
     keys = [
         *(_dict(step).get("instrument") for step in _list(procedure.get("before"))),
+        _dict(block.get("crossing")).get("questionnaire"),
         *(_dict(phase).get("questionnaire") for phase in _list(block.get("phases"))),
         *(_dict(step).get("instrument") for step in _list(block.get("after"))),
         *(_dict(step).get("instrument") for step in _list(procedure.get("after"))),

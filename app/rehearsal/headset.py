@@ -14,11 +14,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.client import TelemetryClient, TelemetryError
+from app.client import RoadClient, TelemetryClient, TelemetryError
 from app.protocol import Tasks
 from app.rehearsal.avatars import AvatarSource, CannotChange, DelayedCopy, PhysicsBody, RemoteAvatar
 from app.rehearsal.body import FRAME_RATE_HZ, Person
 from app.rehearsal.goals import goal_of
+from app.rehearsal.road_run import CrossingRun, RoadShape
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
 from app.science.rotations import FloatArray
@@ -44,8 +45,16 @@ MESSAGES_AHEAD = 100
 WITHDRAWN = "withdrawn"
 """The status of a session, and the error code with which the server refuses its data."""
 
+ROAD_ANSWERS_S = 20.0
+"""How long a rehearsal faster than real time waits for the traffic of a step."""
+_SLOWEST_M_S, _LOOKS_FOR_S = 0.55, 1.0
+
 LATE_S = 0.2
 """How late a frame may be, in the headset's time, and still be caught up on."""
+
+
+class RoadLostError(Exception):
+    """The study's road broke off during a phase; the message says why."""
 
 
 @dataclass
@@ -139,6 +148,7 @@ class Headset:
             self._avatar = DelayedCopy(person.skeleton, with_fingers=person.fingers is not None)
         self._run: TimedRun | None = None
         self._phase_id = 0
+        self._road: RoadClient | None = None
         self._buffers = Buffers()
         self._t_pose_since_s: float | None = None
         self._materialised = False
@@ -190,7 +200,10 @@ class Headset:
             await self._follow(state)
             for _ in range(FRAMES_PER_BATCH):
                 await self._draw(recording=state.recording)
+                if self._road is not None and self._clock.speed > 1.0:
+                    await self._road.caught_up(ROAD_ANSWERS_S)
             await self._sleep_until_due()
+        await self._leave_road()
         await self._flush()
         await self.client.drained()
 
@@ -289,7 +302,9 @@ class Headset:
         self._wear(order.body)
         self._follow_later(order.latency_ms / 1000.0)
         self._show_boxes(None if order.limb is None else self._layouts[Limb(order.limb)])
-        if order.limb is None:
+        if order.has_road:
+            self._run = self._enter_road(order)
+        elif order.limb is None:
             self._run = FreeRun(order, self.t_s)
         else:
             hand = Laterality(self._person.handedness)
@@ -297,7 +312,35 @@ class Headset:
             parts = JOINT_NAMES if self._avatar is None else self._avatar.parts
             self._run = BoxRun(order, rules, parts, self.t_s)
 
+    def _enter_road(self, order: PhaseOrder) -> CrossingRun:
+        """Begin to cross, and open the road's socket, whose traffic warms up at once."""
+        content = {} if self.client.welcome is None else self.client.welcome.road
+        sizes = content["road"]
+        lane_m, behind_m = sizes["lane_width_m"], content["starts_behind_kerb_m"]
+        shape = RoadShape(lane_m, behind_m, content["step_s"], content["kerb_height_m"])
+        # As long as they need to the other kerb, and a second more.
+        accepts_s = 2.0 * lane_m / _SLOWEST_M_S + _LOOKS_FOR_S
+        run = CrossingRun(order, shape, accepts_s, self.t_s)
+        x_m, _, z_m = self._person.participant.pose(self.t_s, None).root_position_m
+        self._road = RoadClient(
+            self.client.url.replace("/vr/stream", "/vr/road"),
+            self.client.token,
+            order.phase_id,
+            order.active_s,
+            run.stands_at(float(x_m), float(z_m)),
+        )
+        return run
+
+    async def _leave_road(self) -> None:
+        if self._road is not None:
+            road, self._road = self._road, None
+            await road.end()
+            if road.ended is None or road.ended.problem:
+                raise RoadLostError("the road did not end" if road.ended is None
+                                    else f"the road broke off: {road.ended.problem}")  # fmt: skip
+
     async def _leave_phase(self) -> None:
+        await self._leave_road()
         await self._flush()
         self._run = None
         self._follow_later(0.0)
@@ -329,6 +372,9 @@ class Headset:
         if isinstance(run, BoxRun):
             solid = self._physics is not None
             goal = goal_of(run.state, self._person.leading_foot, solid=solid)
+        elif isinstance(run, CrossingRun) and self._road is not None:
+            actors = () if self._road.actors is None else self._road.actors.actors
+            goal = run.goal(actors)
         avatar = self._avatar
         pose = self._person.participant.pose(t_s, goal)
         if avatar is None:
@@ -343,6 +389,9 @@ class Headset:
             self._record(t_s, pose, shown, (fingers, avatar.fingers))
         if run is not None:
             connected = self.client.connected or self._goes_on_alone
+            if isinstance(run, CrossingRun) and self._road is not None:
+                x_m, _, z_m = (float(one) for one in shown.root_position_m)
+                self._road.say(run.walk(t_s, x_m, z_m), running=run.clock_runs)
             await self._report(run.frame(t_s, avatar.touches, connected=connected))
             if run.ended:
                 await self._leave_phase()

@@ -32,6 +32,7 @@ from app.rehearsal.avatars import FromServer
 from app.rehearsal.body import make_person
 from app.rehearsal.cast import Cast, Interruption, perform
 from app.rehearsal.headset import WITHDRAWN, FrameClock, Headset
+from app.resources import study_configs_dir
 
 Json = dict[str, Any]
 AVATARS = ("delayed_copy", "physics")
@@ -97,7 +98,8 @@ class RehearsalReport:
     """The result of a rehearsal: what was sent, and what the server reports as stored.
 
     `status`: how the session ended; somebody else may have aborted it. `speed`: as it was asked
-    for; `speed_reached`: as fast as the machine could go. The latency of phases is
+    for; `speed_reached`: as fast as the machine could go. `crossings`: how the participant crossed
+    the study's road, if it has one. The latency of phases is
     None if the caller must not know it.
     """
 
@@ -109,6 +111,7 @@ class RehearsalReport:
     frames_sent: dict[str, int]
     frames_stored: dict[str, int]
     streams: list[Json]
+    crossings: list[Json]
     phases: list[Json]
     questionnaires: int
     completions: int
@@ -120,6 +123,24 @@ class RehearsalReport:
     speed: float
     speed_reached: float
     capture: str | None
+
+
+async def store_template(plan: RehearsalPlan) -> None:
+    """Store the template of the plan's study on its server, if it is one and is not there yet.
+
+    Raises ServerRefusedError or UnreachableError.
+    """
+    file = study_configs_dir() / "templates" / f"{plan.study}.yaml"
+    if not file.is_file():
+        return
+    async with _client(plan) as http:
+        await _sign_in(http, plan)
+        try:
+            await call(http, "GET", f"/api/studies/{plan.study}")
+        except ServerRefusedError as error:
+            if error.code != "not_found":
+                raise
+            await call(http, "POST", "/api/studies", {"yaml": file.read_text(encoding="utf-8")})
 
 
 async def visit_of(plan: RehearsalPlan) -> Visit:
@@ -255,6 +276,9 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
     streams: list[Json] = await call_with_retry(
         cast.operator.client, "GET", f"/api/sessions/{session_id}/streams"
     )
+    road: Json = await call_with_retry(
+        cast.operator.client, "GET", f"/api/sessions/{session_id}/road"
+    )
     stored: dict[str, int] = {}
     for row in streams:
         if row["stream"] in cast.headset.frames_sent:
@@ -268,6 +292,7 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
         frames_sent=cast.headset.frames_sent,
         frames_stored=stored,
         streams=streams,
+        crossings=[one for run in road["runs"] for one in run["crossings"]],
         phases=[
             {
                 key: phase[key]

@@ -65,6 +65,20 @@ from app.wire.messages import (
     Welcome,
 )
 from app.wire.quality import FrameFlags, flag_batches, flag_frames, untracked_hands
+from app.wire.road import (
+    FROM_ROAD_CLIENT,
+    FROM_ROAD_SERVER,
+    FloorPlace,
+    RoadActor,
+    RoadActors,
+    RoadClock,
+    RoadEnd,
+    RoadEnded,
+    RoadHello,
+    RoadMessage,
+    RoadPlaces,
+    RoadWelcome,
+)
 from app.wire.trackers import HEAD_POSES, HeadPose, HeadPoses, Place, TrackerPlaces, TrackersState
 
 __all__ = [
@@ -74,6 +88,8 @@ __all__ = [
     "CODE_OF_STREAM",
     "FINGER_STREAMS",
     "FINGER_VALUES_PER_FRAME",
+    "FROM_ROAD_CLIENT",
+    "FROM_ROAD_SERVER",
     "GOALS",
     "HEADER_BYTES",
     "HEAD_POSES",
@@ -100,6 +116,7 @@ __all__ = [
     "ContactReport",
     "Failure",
     "Flag",
+    "FloorPlace",
     "FrameFlags",
     "Goal",
     "GoalState",
@@ -128,6 +145,15 @@ __all__ = [
     "Report",
     "ReportBody",
     "Resend",
+    "RoadActor",
+    "RoadActors",
+    "RoadClock",
+    "RoadEnd",
+    "RoadEnded",
+    "RoadHello",
+    "RoadMessage",
+    "RoadPlaces",
+    "RoadWelcome",
     "StreamName",
     "StreamPosition",
     "TrackerPlaces",

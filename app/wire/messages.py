@@ -359,8 +359,9 @@ class StreamPosition(Message):
 class PhaseOrder(Message):
     """The phase to run, to which the headset brings its own state.
 
-    Of the headset's messages only this one contains the latency. `until_completions`: a practice
-    ends once this many tasks are completed, before its time is up; null for all other phases.
+    Of the headset's messages only this one contains the latency. `until_completions`: the phase
+    ends once this many tasks or crossings are completed, before its time is up; null if it does
+    not. `has_road`: the participant crosses the welcome's `road`, whose socket is open meanwhile.
     `body`: the name of the body to wear, one of the welcome's `bodies`; null for that of the
     avatar's configuration.
     """
@@ -378,7 +379,8 @@ class PhaseOrder(Message):
     pausing: bool
     resuming: bool
     until_completions: int | None = None
-    # Left out if not set: older clients do not know it, and accept no unknown fields.
+    # Left out if not set: older clients do not know them, and accept no unknown fields.
+    has_road: bool = Field(default=False, exclude_if=lambda value: not value)
     body: str | None = Field(default=None, exclude_if=lambda value: value is None)
 
 
@@ -491,7 +493,8 @@ class Welcome(Message):
 
     `bodies`: the bodies that conditions of the study name, in the order of its file; left out if
     there are none. A client requests the avatar of each before the first block. `appearance`: the
-    palettes of the study's boxes, as in its file.
+    palettes of the study's boxes, as in its file. `road`: the road that participants cross, its
+    sizes only; left out if the study has none.
     """
 
     type: Literal["welcome"] = "welcome"
@@ -509,6 +512,7 @@ class Welcome(Message):
     state: HeadsetState
     bodies: tuple[str, ...] = Field(default=(), exclude_if=lambda value: not value)
     appearance: dict[str, Any] = Field(default_factory=dict, exclude_if=lambda value: not value)
+    road: dict[str, Any] = Field(default_factory=dict, exclude_if=lambda value: not value)
 
 
 class Ack(Message):

@@ -7,6 +7,7 @@ from tests.features.lab import Lab
 
 NOT_OVER_HTTP = {
     "WEBSOCKET /api/vr/stream",
+    "WEBSOCKET /api/vr/road",
     "WEBSOCKET /api/vr/trackers",
     "WEBSOCKET /api/vr/self-tests/storage",
     "WEBSOCKET /api/sessions/{session_id}/pose",

@@ -112,11 +112,12 @@ class BaselineStep(Strict):
         ],
         "docs/protocol.md": [
             Edit(
-                "free_roam, practice, task, questionnaire",
-                "free_roam, baseline, practice, task, questionnaire",
+                "free_roam, practice, task, road_crossing, questionnaire",
+                "free_roam, baseline, practice, task, road_crossing, questionnaire",
             ),
             Edit(
-                "`kind` (free_roam, practice, task)", "`kind` (free_roam, baseline, practice, task)"
+                "`kind` (free_roam, practice, task, road",
+                "`kind` (free_roam, baseline, practice, task, road",
             ),
         ],
         "study_configs/README.md": [after("`free_roam`, ", "`baseline`, ")],
@@ -177,7 +178,7 @@ def test_a_task_phase_edits_at_most_five_files(tmp_path: Path) -> None:
         "event": "phase_prepared",
         "has boxes": True,
         "without a body": "The step “baseline” comes before the participant has a body.",
-        "codebook": ["free_roam, baseline, practice, task"],
+        "codebook": ["free_roam, baseline, practice, task, road_crossing"],
     }
     tree.run_module("app.cli.page_texts")
     pages = tree.read(TARGET)

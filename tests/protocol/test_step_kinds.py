@@ -46,7 +46,8 @@ def test_every_step_of_a_study_file_is_of_a_kind() -> None:
         if "step" in one.get("properties", {})
     }
     assert words < set(STEP_KINDS)
-    assert set(STEP_KINDS) - words == {"task", "questionnaire"}  # In a block, without `step:`.
+    # In a block, without `step:`.
+    assert set(STEP_KINDS) - words == {"task", "road_crossing", "questionnaire"}
 
 
 def test_the_documents_name_every_kind() -> None:

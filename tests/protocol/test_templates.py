@@ -23,8 +23,8 @@ def test_a_template_is_a_complete_study(file: Path) -> None:
         assert set(protocol.languages) <= set(library[key].languages)
 
 
-def test_the_templates_are_three_different_designs() -> None:
-    """Conditions, orders and slots of the three templates are as computed by hand."""
+def test_the_templates_are_four_different_designs() -> None:
+    """Conditions, orders and slots of the four templates are as computed by hand."""
     designs = {}
     for file in FILES:
         protocol = loaded(file.read_text(encoding="utf-8")).protocol
@@ -33,6 +33,7 @@ def test_the_templates_are_three_different_designs() -> None:
     assert designs == {
         "four-latencies-williams": (4, "williams", 16),
         "pilot-listed-orders": (3, "explicit", 4),
+        "road-crossing": (2, "all_permutations", 12),
         "two-latencies-hand": (2, "all_permutations", 12),
     }
 

@@ -28,9 +28,13 @@ def test_a_template_asks_for_every_task_and_every_form_of_a_block(file: Path) ->
     protocol = loaded(file.read_text(encoding="utf-8")).protocol
     rules, block = protocol.valid_when, protocol.procedure.block
     assert rules is not None
-    assert {one.phase for one in rules.phases} == {str(one.limb) for one in block.phases}
-    requested = {one.questionnaire for one in block.phases} | {
-        one.instrument for one in block.after
+    crossing = [] if block.crossing is None else [block.crossing]
+    done = {str(one.limb) for one in block.phases} | {one.kind for one in crossing}
+    assert {one.phase for one in rules.phases} == done
+    requested = {
+        *(one.questionnaire for one in crossing),
+        *(one.questionnaire for one in block.phases),
+        *(one.instrument for one in block.after),
     }
     assert requested <= set(rules.forms)
 

@@ -9,6 +9,7 @@ from app.adapters.cosimulation.scene_file import (
     CrossingScene,
     load_scene,
     partners_of,
+    partners_of_study,
     shipped_scenes,
 )
 from app.adapters.cosimulation.sumo_partner import SumoPartner, sumo_folder
@@ -27,6 +28,7 @@ __all__ = [
     "drive",
     "load_scene",
     "partners_of",
+    "partners_of_study",
     "shipped_scenes",
     "sumo_folder",
 ]

@@ -5,7 +5,7 @@ All problems of a file are reported together, each with its line.
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,19 +15,26 @@ import numpy as np
 from pydantic import ValidationError
 
 from app.adapters.cosimulation.process_partner import ProcessPartner, ProcessPlan
-from app.adapters.cosimulation.scene_schema import (
-    CarsFile,
-    CrossingFile,
-    PartnerFile,
-    PathFile,
-    ProcessFile,
-    SumoFile,
-    WalkerFile,
-)
 from app.adapters.cosimulation.sumo_partner import SumoPartner
 from app.adapters.walks.model_file import read_model
 from app.adapters.walks.track_table import TrackReading, read_track_table
-from app.protocol import ConfigError, ConfigProblem, explain, read_source
+from app.protocol import (
+    CarsFile,
+    ConfigError,
+    ConfigProblem,
+    CrossingFile,
+    OfStudy,
+    PartnerFile,
+    PathFile,
+    ProcessFile,
+    ProcessOfStudy,
+    StudyRoad,
+    SumoFile,
+    WalkerFile,
+    WalkerOfStudy,
+    explain,
+    read_source,
+)
 from app.science.cosimulation import (
     Cars,
     CosimulationError,
@@ -97,10 +104,21 @@ def load_scene(path: Path) -> CrossingScene:
     return CrossingScene(file, path.parent, digest)
 
 
+Made = list[tuple[Partner, Lateness]]
+
+
+@dataclass(frozen=True)
+class _Setting:
+    """What all partners of a scene share."""
+
+    road: Road
+    step_s: float
+    folder: Path
+    seed: int
+
+
 @contextmanager
-def partners_of(
-    scene: CrossingScene, seed: int
-) -> Iterator[tuple[list[tuple[Partner, Lateness]], list[str]]]:
+def partners_of(scene: CrossingScene, seed: int) -> Iterator[tuple[Made, list[str]]]:
     """Make a scene's partners in its order, and end them afterwards.
 
     Yields:
@@ -111,11 +129,28 @@ def partners_of(
         CosimulationError: a partner cannot be made; the message says why and what to do.
         OSError: a file cannot be opened, or a port is taken.
     """
+    setting = _Setting(scene.road, scene.file.step_s, scene.folder, seed)
+    with _made(scene.file.partners, setting) as made:
+        yield made
+
+
+@contextmanager
+def partners_of_study(road: StudyRoad, seed: int) -> Iterator[tuple[Made, list[str]]]:
+    """Make the partners of a study's road, without the participant; see `partners_of`."""
+    setting = _Setting(road.road.road(), road.step_s, Path(), seed)
+    with _made(road.partners, setting) as made:
+        yield made
+
+
+@contextmanager
+def _made(
+    partners: Sequence[PartnerFile | OfStudy], setting: _Setting
+) -> Iterator[tuple[Made, list[str]]]:
     with ExitStack() as closing:
-        made: list[tuple[Partner, Lateness]] = []
+        made: Made = []
         to_start: list[str] = []
-        for one in scene.file.partners:
-            partner = _partner(one, scene, seed)
+        for one in partners:
+            partner = _partner(one, setting)
             if isinstance(partner, ProcessPartner | SumoPartner):
                 closing.callback(partner.close)
             if isinstance(partner, ProcessPartner) and not partner.is_started_by_us:
@@ -124,43 +159,46 @@ def partners_of(
         yield made, to_start
 
 
-def _partner(one: PartnerFile, scene: CrossingScene, seed: int) -> Partner:
-    step_s, road = one.step_s or scene.file.step_s, scene.road
+def _partner(one: PartnerFile | OfStudy, setting: _Setting) -> Partner:
+    step_s, road, seed = one.step_s or setting.step_s, setting.road, setting.seed
     # Each partner has its own numbers, whatever others draw.
     rng = np.random.default_rng((seed, crc32(one.name.encode())))
     match one:
-        case WalkerFile():
-            return Walker(one.name, step_s, _plan(one, scene, rng), road)
+        case WalkerOfStudy():
+            return Walker(one.name, step_s, _plan(one, setting.folder, rng), road)
         case PathFile():
-            return RecordedPath(one.name, step_s, *_recorded(one, scene))
+            return RecordedPath(one.name, step_s, *_recorded(one, setting.folder))
         case CarsFile():
             plan = departures(one.name, tuple(flow.flow() for flow in one.flows), rng)
             return Cars(one.name, step_s, road, plan, one.driver())
         case SumoFile():
             plan = departures(one.name, tuple(flow.flow() for flow in one.flows), rng)
             return SumoPartner(one.name, step_s, road, plan, seed)
+        case ProcessOfStudy():
+            reached = ProcessPlan(one.name, step_s, (), one.port, one.connect_s)
+            return ProcessPartner(reached, road, seed)
         case ProcessFile():
-            reached = (one.command, one.port, one.connect_s, scene.folder)
-            return ProcessPartner(ProcessPlan(one.name, step_s, *reached), road, seed)
+            own = (one.command, one.port, one.connect_s, setting.folder)
+            return ProcessPartner(ProcessPlan(one.name, step_s, *own), road, seed)
 
 
-def _plan(one: WalkerFile, scene: CrossingScene, rng: np.random.Generator) -> WalkerPlan:
+def _plan(one: WalkerOfStudy, folder: Path, rng: np.random.Generator) -> WalkerPlan:
     path = PlannedPath(np.array(one.path, dtype=np.float64))
     vector = np.array([one.velocity_m_s, one.acceleration_m_s2, one.angular_per_m])
-    if one.model is not None:
-        fit, _, _ = read_model(scene.folder / one.model)
+    if isinstance(one, WalkerFile) and one.model is not None:
+        fit, _, _ = read_model(folder / one.model)
         vector = fit.named("prob").vectors(dependencies_of(path, one.stature_m), 1, rng)[0]
     looking = (one.leaves_s, one.waits_m, one.looks_s, one.accepts_s)
     return WalkerPlan(path, vector, *looking)
 
 
-def _recorded(one: PathFile, scene: CrossingScene) -> tuple[FloatArray, FloatArray]:
+def _recorded(one: PathFile, folder: Path) -> tuple[FloatArray, FloatArray]:
     if (one.file is None) == (not one.points):
         raise CosimulationError(f"The path of {one.name!r} needs either points or a file.")
     if one.file is None:
         points = np.array(one.points, dtype=np.float64)
         return points[:, 0], points[:, 1:]
-    path = scene.folder / one.file
+    path = folder / one.file
     table = read_track_table(path.read_bytes(), name=path.name, reading=TrackReading())
     if len(table.tracks) != 1:
         raise CosimulationError(f"{path} has the tracks of {len(table.tracks)} people; give one.")

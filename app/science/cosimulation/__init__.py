@@ -6,8 +6,8 @@ Others, such as traffic by SUMO or any process that speaks JSON, are in `app.ada
 """
 
 from app.science.cosimulation.cars import Cars, DrivenCar, Driver, Dynamics, PointMass
-from app.science.cosimulation.conducting import Clocks, Conductor, Timing
-from app.science.cosimulation.measures import Collision, Crossing, crossings
+from app.science.cosimulation.conducting import Clocks, Conductor, Noted, Timing
+from app.science.cosimulation.measures import Collision, Crossing, crossings, crossings_of
 from app.science.cosimulation.partners import (
     InProcess,
     Lateness,
@@ -15,14 +15,24 @@ from app.science.cosimulation.partners import (
     PartnerLostError,
     Request,
     Rule,
+    SceneOverError,
 )
 from app.science.cosimulation.persons import RecordedPath, Walker, WalkerPlan
-from app.science.cosimulation.record import Guess, Record, Row, time_of
+from app.science.cosimulation.record import (
+    Guess,
+    Record,
+    Row,
+    header_line,
+    step_line,
+    steps_of,
+    time_of,
+)
 from app.science.cosimulation.road import (
     Departure,
     Flow,
     Lane,
     Road,
+    arrival_s,
     departures,
     heading_of,
 )
@@ -45,6 +55,7 @@ __all__ = [
     "InProcess",
     "Lane",
     "Lateness",
+    "Noted",
     "Partner",
     "PartnerLostError",
     "PointMass",
@@ -54,12 +65,18 @@ __all__ = [
     "Road",
     "Row",
     "Rule",
+    "SceneOverError",
     "State",
     "Timing",
     "Walker",
     "WalkerPlan",
+    "arrival_s",
     "crossings",
+    "crossings_of",
     "departures",
+    "header_line",
     "heading_of",
+    "step_line",
+    "steps_of",
     "time_of",
 ]

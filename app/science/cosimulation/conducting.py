@@ -22,6 +22,7 @@ from app.science.cosimulation.partners import (
     Partner,
     PartnerLostError,
     Request,
+    SceneOverError,
 )
 from app.science.cosimulation.record import Guess, Record, Row, time_of
 from app.science.cosimulation.states import (
@@ -59,6 +60,10 @@ class Clocks:
 
     now_s: Callable[[], float]
     pace: Callable[[float], None] = lambda _: None
+
+
+Noted = Callable[[int, tuple[Row, ...]], None]
+"""Called with the number of a step and all its rows as soon as it is part of the record."""
 
 
 @dataclass(eq=False)
@@ -110,8 +115,10 @@ class Conductor:
         self._guesses: list[Guess] = []
         self._took_s: list[float] = []
 
-    def run(self, steps: int, header: Mapping[str, Any]) -> tuple[Record, Timing]:
-        """Advance all partners by a number of steps, or until one is lost.
+    def run(
+        self, steps: int, header: Mapping[str, Any], noted: Noted = lambda _, __: None
+    ) -> tuple[Record, Timing]:
+        """Advance all partners by a number of steps, until one is lost or says that it is over.
 
         Raises:
             CosimulationError: two partners have an actor of the same name.
@@ -121,13 +128,17 @@ class Conductor:
             for course in self._courses:
                 self._accept(course, course.partner.start(), 0)
             self._note(0)
+            noted(0, self._steps[0])
             for step in range(steps):
                 self._clocks.pace(self._time(step))
                 began_s = self._clocks.now_s()
                 self._advance(step, began_s)
+                noted(step + 1, self._steps[-1])
                 self._took_s.append(self._clocks.now_s() - began_s)
         except PartnerLostError as error:
             lost = str(error)
+        except SceneOverError:
+            pass  # as complete as one of all steps
         return self._finished(header, lost)
 
     def _finished(self, header: Mapping[str, Any], lost: str) -> tuple[Record, Timing]:

@@ -43,7 +43,8 @@ class Crossing:
 
     Attributes:
         person: name of the actor.
-        steps_on_s, steps_off_s: first time on the carriageway, first time behind the other kerb.
+        steps_on_s, steps_off_s: first time on the carriageway, first time behind a kerb again.
+        is_across: whether that was the other kerb; false if they turned back or are still on it.
         waited_s: see the module.
         gap_accepted_s: None if no car was coming, or nobody stepped onto the carriageway.
         gaps_refused_s: in the order in which the cars came.
@@ -56,6 +57,7 @@ class Crossing:
     person: str
     steps_on_s: float | None
     steps_off_s: float | None
+    is_across: bool
     waited_s: float
     gap_accepted_s: float | None
     gaps_refused_s: tuple[float, ...]
@@ -65,14 +67,41 @@ class Crossing:
     collision: Collision | None
 
 
+Frame = tuple[State, list[State]]
+"""A person and all cars at one step."""
+
+
 def crossings(record: Record, road: Road) -> tuple[Crossing, ...]:
     """Return the crossing of every person of a record, by name."""
     names = {row.state.name for rows in record.steps for row in rows if row.state.kind == "person"}
-    return tuple(_crossing(record, road, name) for name in sorted(names))
+    return tuple(
+        _crossing(list(_frames(record, name)), road, name, record.step_s) for name in sorted(names)
+    )
 
 
-def _crossing(record: Record, road: Road, name: str) -> Crossing:
-    frames = list(_frames(record, name))
+def crossings_of(record: Record, road: Road, name: str) -> tuple[Crossing, ...]:
+    """Return the crossings of one person one after the other.
+
+    Each begins where the one before ended, that is with the first step behind a kerb; somebody who
+    turns back ends one without being across. A last one without a step onto the carriageway is
+    left out, unless it is the only one.
+    """
+    found: list[Crossing] = []
+    frames: list[Frame] = []
+    was_on = False
+    for frame in _frames(record, name):
+        frames.append(frame)
+        is_on = road.is_on_carriageway(frame[0])
+        if was_on and not is_on:
+            found.append(_crossing(frames, road, name, record.step_s))
+            frames = [frame]
+        was_on = is_on
+    if was_on or (frames and not found):
+        found.append(_crossing(frames, road, name, record.step_s))
+    return tuple(found)
+
+
+def _crossing(frames: list[Frame], road: Road, name: str, step_s: float) -> Crossing:
     on = next((at for at, (own, _) in enumerate(frames) if road.is_on_carriageway(own)), None)
     ends = range(len(frames)) if on is None else range(on, len(frames))
     off = None
@@ -97,7 +126,8 @@ def _crossing(record: Record, road: Road, name: str) -> Crossing:
         person=name,
         steps_on_s=None if on is None else frames[on][0].time_s,
         steps_off_s=None if off is None else frames[off][0].time_s,
-        waited_s=round(sum(waits) * record.step_s, 6),
+        is_across=off is not None and frames[off][0].y_m * frames[0][0].y_m < 0.0,
+        waited_s=round(sum(waits) * step_s, 6),
         gap_accepted_s=_finite(gap),
         gaps_refused_s=refused,
         least_time_to_collision_s=_finite(min(reach, default=inf)),
@@ -107,7 +137,7 @@ def _crossing(record: Record, road: Road, name: str) -> Crossing:
     )
 
 
-def _frames(record: Record, name: str) -> Iterator[tuple[State, list[State]]]:
+def _frames(record: Record, name: str) -> Iterator[Frame]:
     """Yield the person and all cars at each step at which the person is there."""
     for rows in record.steps:
         own = [row.state for row in rows if row.state.name == name]

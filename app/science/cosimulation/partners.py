@@ -55,12 +55,16 @@ class PartnerLostError(Exception):
     """A partner can no longer be asked; the message says why. The record up to here is kept."""
 
 
+class SceneOverError(Exception):
+    """A partner says that the scene is over: its record ends here, and is complete."""
+
+
 class Partner(Protocol):
     """A simulation that takes part: a person's path, traffic, or any other process.
 
     `begin` returns at once where a partner computes elsewhere, so that partners compute at the same
     time; `answer` returns None if there is none within `timeout_s` of real time. Both raise
-    PartnerLostError.
+    PartnerLostError, or SceneOverError.
     """
 
     @property

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, Literal
@@ -65,17 +65,13 @@ class Record:
 
     def lines(self) -> Iterator[str]:
         """Yield the record as JSON lines: the header, one line a step, the guesses, the end."""
-        yield _line({"version": VERSION, "step_s": self.step_s, **self.header})
+        yield header_line(self.header, self.step_s)
         for number, rows in enumerate(self.steps):
-            yield _line(
-                {
-                    "time_s": time_of(number, self.step_s),
-                    "actors": [
-                        {"partner": row.partner, "origin": row.origin, **_values(row.state)}
-                        for row in rows
-                    ],
-                }
-            )
+            yield step_line(number, rows, self.step_s)
+        yield from self.last_lines()
+
+    def last_lines(self) -> Iterator[str]:
+        """Yield what comes after the steps: the guesses, and the end."""
         for guess in self.guesses:
             came = None if guess.came is None else _values(guess.came)
             told = {"partner": guess.partner, "said_s": guess.said_s, "error_m": guess.error_m}
@@ -91,6 +87,31 @@ class Record:
     def sha256(self) -> str:
         """The hash of the bytes, in hexadecimal digits."""
         return hashlib.sha256(self.content).hexdigest()
+
+
+def header_line(header: Mapping[str, Any], step_s: float) -> str:
+    """Return the first line of a record."""
+    return _line({"version": VERSION, "step_s": step_s, **header})
+
+
+def step_line(number: int, rows: tuple[Row, ...], step_s: float) -> str:
+    """Return the line of one step."""
+    actors = [{"partner": row.partner, "origin": row.origin, **_values(row.state)} for row in rows]
+    return _line({"time_s": time_of(number, step_s), "actors": actors})
+
+
+def steps_of(lines: Iterable[str]) -> tuple[tuple[Row, ...], ...]:
+    """Return the steps of a record's lines, which may break off; all other lines are skipped."""
+    steps: list[tuple[Row, ...]] = []
+    for line in lines:
+        content = json.loads(line)
+        if "actors" in content:
+            steps.append(tuple(_row(one) for one in content["actors"]))
+    return tuple(steps)
+
+
+def _row(told: dict[str, Any]) -> Row:
+    return Row(told.pop("partner"), told.pop("origin"), State(**told))
 
 
 def time_of(step: int, step_s: float) -> float:

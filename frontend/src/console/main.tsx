@@ -1,6 +1,5 @@
 import { mountPage } from "@shared/ui/Page";
 import { Console } from "./Console";
-import { loaded, translations } from "./i18n";
+import { translations } from "./i18n";
 
-// Not `await`: a module that waits at its top would keep the bundler from joining small files.
-void loaded.then(() => mountPage({ translations, children: <Console /> }));
+mountPage({ translations, children: <Console /> });

@@ -8,6 +8,7 @@ import { type AuditFilter, audit, invitations, people } from "@shared/api/people
 import { performers } from "@shared/api/performers";
 import { calibrations, consents, selfTests, suggestions } from "@shared/api/records";
 import { rights } from "@shared/api/rights";
+import { road } from "@shared/api/road";
 import { trackers } from "@shared/api/trackers";
 import type { DataKind, Kind } from "@shared/api/types";
 import { infiniteQueryOptions, keepPreviousData, queryOptions } from "@tanstack/react-query";
@@ -162,6 +163,14 @@ export const sessionTrackersQuery = (sessionId: string) =>
     queryKey: ["session-trackers", sessionId],
     queryFn: () => trackers.ofSession(sessionId),
     refetchInterval: 1000,
+  });
+
+export const sessionRoadQuery = (sessionId: string) =>
+  queryOptions({
+    queryKey: ["session-road", sessionId],
+    queryFn: () => road.ofSession(sessionId),
+    // Of a study without a road nothing ever changes.
+    refetchInterval: ({ state }) => (state.data?.has_road === false ? false : 1000),
   });
 
 export const peopleQuery = queryOptions({ queryKey: ["people"], queryFn: people.list });

@@ -15,6 +15,7 @@ FAMILIES: dict[Family, tuple[str, ...]] = {
         "telemetry_streams",
         "client_reports",
         "clock_probes",
+        "road_chunks",
         "tracker_alignments",
         "tracker_chunks",
     ),
@@ -27,6 +28,8 @@ FAMILIES: dict[Family, tuple[str, ...]] = {
         "phase_latencies",
         "phase_quality",
         "phases",
+        "road_crossings",
+        "road_runs",
     ),
     "answers": (
         "answer_corrections",

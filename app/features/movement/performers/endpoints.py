@@ -33,8 +33,9 @@ from app.features.movement.performers.service import Performers
 from app.features.movement.performers.socket import MOST_AHEAD, Watched, serve_watcher
 from app.features.movement.performers.views import performers_view, recording_view
 from app.features.movement.performers.worker_tasks import write_recording
+from app.features.people.audit import record
 from app.platform.context import AppContext
-from app.platform.dependencies import Context, Reading, SignedIn
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 from app.platform.incomplete_files import uploads_of
 
 router = APIRouter(prefix="/trackers", tags=["trackers"])
@@ -49,10 +50,19 @@ def get_performers(db: Reading, context: Context, _: SignedIn) -> PerformersView
 
 
 @router.post("/performers/pose")
-def post_pose(body: PoseWish, db: Reading, context: Context, _: SignedIn) -> PerformersView:
+def post_pose(body: PoseWish, db: Writing, context: Context, caller: SignedIn) -> PerformersView:
     """Agree about the pose in which a performer is now, for everybody who watches."""
     performers = context.part(Performers)
     performers.agree(body.name, body.pose)
+    name = body.name
+    record(
+        db,
+        actor=caller.actor,
+        action="performer.agreed",
+        subject=name.source,
+        details={"door": name.door, "performer": name.skeleton or name.source, "pose": body.pose},
+        now=context.clock.utc_now(),
+    )
     return performers_view(db, performers)
 
 

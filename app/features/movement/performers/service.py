@@ -154,7 +154,8 @@ class Performers(Part):
             agreed = None if performer is None else performer.agreed
             if agreed is not None and is_same(agreed.rig, recording.rig):
                 recording.rig = agreed.rig  # with a T-pose that was shown meanwhile
-            return recording, recording.recorded()
+        # An ended recording takes no more frames: the door's thread need not wait for this.
+        return recording, recording.recorded()
 
     def discard(self, recording_id: str) -> None:
         """Forget a recording; raises NotFound."""

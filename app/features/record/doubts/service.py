@@ -40,7 +40,7 @@ from app.models import (
     StudySession,
     TelemetryStream,
 )
-from app.protocol import BOX_KINDS, StudyProtocol
+from app.protocol import BOX_KINDS, ROAD_KINDS, StudyProtocol
 from app.wire import BODY_STREAMS
 
 OBSERVED = "impossible"
@@ -225,7 +225,8 @@ class _Reader:
                 boxes=boxes[place],
                 moments=tuple(moments.get(key, ())),
                 contacts=tuple(contacts.get(key, ())),
-                completed=tuple(completed.get(key, ())),
+                # Those of crossings follow from the record of the road, not from boxes.
+                completed=() if row.kind in ROAD_KINDS else tuple(completed.get(key, ())),
                 coverage=coverage.get(key),
                 statures=statures.get(key, ()),
             )

@@ -53,6 +53,8 @@ from app.wire import (
 )
 
 CENTIMETRES_PER_METRE = 100.0
+_OF_ROAD = {"road", "kerb_height_m", "starts_behind_kerb_m", "step_s"}
+"""What a headset needs to know of a study's road; its traffic comes as it drives."""
 
 
 def worn_humanoid(db: Session, session: StudySession, body: str | None) -> str | None:
@@ -97,6 +99,9 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
         state=headset_state(db, session, abilities=hello.abilities),
         bodies=protocol.bodies,
         appearance=protocol.appearance.model_dump(mode="json"),
+        road={}
+        if protocol.road is None
+        else protocol.road.model_dump(mode="json", include=_OF_ROAD),
     )
 
 
@@ -320,5 +325,6 @@ def _phase_order(
         pausing=phase.pausing,
         resuming=phase.resuming,
         until_completions=step.until_completions,
+        has_road=step.spec.has_road,
         body=step.body,
     )

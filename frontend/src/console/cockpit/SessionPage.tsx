@@ -30,6 +30,7 @@ import { ReceiptDrawer } from "./record/ReceiptDrawer";
 import { ScoresPanel } from "./record/ScoresPanel";
 import { SuggestionsPanel } from "./record/SuggestionsPanel";
 import { Timeline } from "./record/Timeline";
+import { RoadPanel } from "./road/RoadPanel";
 import { currentStep, isBlocked, primaryAction, type Reasoned } from "./session/action";
 import { CommandFailure } from "./session/CommandFailure";
 import { KeyboardHelp, useKeys } from "./session/keys";
@@ -163,6 +164,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       <aside className={classes.side} data-tour="side" aria-label={t("side.label")}>
         {!ended && can("run") && <DevicesPanel session={session} />}
         {!ended && can("run") && <LabTrackersPanel session={session} />}
+        <RoadPanel session={session} />
         {!ended && isChangeable(session) && (
           <AvatarPanel
             session={session}

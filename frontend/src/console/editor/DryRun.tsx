@@ -11,7 +11,6 @@ import { changeWords } from "../avatarChanges/words";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { Order } from "../ui/Order";
-import { ScrollBox } from "../ui/tables";
 import classes from "./DryRun.module.css";
 import type { Draft } from "./useDraft";
 
@@ -178,7 +177,7 @@ function Steps({ timeline }: { readonly timeline: Timeline }): JSX.Element {
   const texts = useTexts();
   const { t } = texts;
   return (
-    <ScrollBox label={t("dryRun.step")} className={classes.scroll}>
+    <div className={classes.scroll}>
       <table className={`${classes.table} numbers`}>
         <thead>
           <tr>
@@ -224,7 +223,7 @@ function Steps({ timeline }: { readonly timeline: Timeline }): JSX.Element {
           ))}
         </tbody>
       </table>
-    </ScrollBox>
+    </div>
   );
 }
 

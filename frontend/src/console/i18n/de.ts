@@ -5,6 +5,7 @@ import { pageDe } from "@shared/ui/pageTexts";
 import { alarmsDe } from "../cockpit/alarms/texts";
 import { bodyPanelDe } from "../cockpit/body/texts";
 import { sideDe } from "../cockpit/record/texts";
+import { roadDe } from "../cockpit/road/texts";
 import { commandsDe } from "../cockpit/session/texts";
 import { sessionDe } from "../cockpit/step/texts";
 import { labTrackersDe } from "../cockpit/trackers/texts";
@@ -18,6 +19,7 @@ export const de: Record<keyof typeof en, string> = {
   ...sessionDe,
   ...bodyPanelDe,
   ...labTrackersDe,
+  ...roadDe,
   ...sideDe,
   "app.name": "Reembody",
   "app.studies": "Studien",
@@ -91,12 +93,6 @@ export const de: Record<keyof typeof en, string> = {
   "sessions.order": "Reihenfolge",
   "sessions.started": "Begonnen",
   "sessions.duration": "Dauer",
-  "sessions.anyStatus": "Jeder Stand",
-  "sessions.step": "Schritt {{number}} von {{total}}:",
-  "sessions.noMatch": "Keine Sitzung passt",
-  "sessions.noMatch.body_one": "{{count}} Sitzung wird nicht gezeigt.",
-  "sessions.noMatch.body_other": "{{count}} Sitzungen werden nicht gezeigt.",
-  "sessions.showAll": "Alle zeigen",
   "sessions.notStarted": "noch nicht begonnen",
   "sessions.empty.title": "Noch keine Sitzungen",
   "sessions.empty.body":

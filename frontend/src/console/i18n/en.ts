@@ -5,6 +5,7 @@ import { pageEn } from "@shared/ui/pageTexts";
 import { alarmsEn } from "../cockpit/alarms/texts";
 import { bodyPanelEn } from "../cockpit/body/texts";
 import { sideEn } from "../cockpit/record/texts";
+import { roadEn } from "../cockpit/road/texts";
 import { commandsEn } from "../cockpit/session/texts";
 import { sessionEn } from "../cockpit/step/texts";
 import { labTrackersEn } from "../cockpit/trackers/texts";
@@ -17,6 +18,7 @@ export const en = {
   ...sessionEn,
   ...bodyPanelEn,
   ...labTrackersEn,
+  ...roadEn,
   ...sideEn,
   "app.name": "Reembody",
   "app.studies": "Studies",
@@ -88,12 +90,6 @@ export const en = {
   "sessions.order": "Order",
   "sessions.started": "Started",
   "sessions.duration": "Duration",
-  "sessions.anyStatus": "Any status",
-  "sessions.step": "Step {{number}} of {{total}}:",
-  "sessions.noMatch": "No session matches",
-  "sessions.noMatch.body_one": "{{count}} session is not shown.",
-  "sessions.noMatch.body_other": "{{count}} sessions are not shown.",
-  "sessions.showAll": "Show all",
   "sessions.notStarted": "not started",
   "sessions.empty.title": "No sessions yet",
   "sessions.empty.body":

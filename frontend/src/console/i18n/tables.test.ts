@@ -1,5 +1,8 @@
 import { itIsTranslated } from "@shared/i18n/tableTests";
 import { describe } from "vitest";
-import { allDe, allEn } from "./tables";
+import { translations } from ".";
 
-describe("every text of the console", () => itIsTranslated(allEn, allDe));
+const tableOf = (language: string): Readonly<Record<string, string>> =>
+  translations.getResourceBundle(language, "translation");
+
+describe("every text of the console", () => itIsTranslated(tableOf("en"), tableOf("de")));

@@ -4,7 +4,6 @@ import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { inLanguage } from "@shared/text";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
-import { ScrollBox } from "../ui/tables";
 import classes from "./Instruments.module.css";
 
 export function Items({ preview }: { readonly preview: InstrumentPreview }): JSX.Element {
@@ -13,7 +12,7 @@ export function Items({ preview }: { readonly preview: InstrumentPreview }): JSX
   return (
     <>
       <Shuffle preview={preview} />
-      <ScrollBox label={t("instrument.answers")} className={classes.scroll}>
+      <div className={classes.scroll}>
         <table className={classes.table}>
           <thead>
             <tr>
@@ -45,7 +44,7 @@ export function Items({ preview }: { readonly preview: InstrumentPreview }): JSX
             ))}
           </tbody>
         </table>
-      </ScrollBox>
+      </div>
     </>
   );
 }

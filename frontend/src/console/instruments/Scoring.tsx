@@ -4,7 +4,6 @@ import { inLanguage } from "@shared/text";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { EmptyState } from "../ui/EmptyState";
-import { ScrollBox } from "../ui/tables";
 import classes from "./Instruments.module.css";
 
 export function Scoring({ preview }: { readonly preview: InstrumentPreview }): JSX.Element {
@@ -23,7 +22,7 @@ export function Scoring({ preview }: { readonly preview: InstrumentPreview }): J
           {t("instrument.recode")} <code className={classes.formula}>{preview.recode}</code>
         </p>
       )}
-      <ScrollBox label={t("instruments.scores")} className={classes.scroll}>
+      <div className={classes.scroll}>
         <table className={`${classes.table} numbers`}>
           <thead>
             <tr>
@@ -52,7 +51,7 @@ export function Scoring({ preview }: { readonly preview: InstrumentPreview }): J
             ))}
           </tbody>
         </table>
-      </ScrollBox>
+      </div>
       <p className={classes.lead}>{t("instrument.missing")}</p>
     </>
   );

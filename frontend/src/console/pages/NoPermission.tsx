@@ -19,22 +19,16 @@ export function RequirePermission({ permission, children }: OnlyProps): JSX.Elem
   if (can(permission)) return <>{children}</>;
   return (
     <div style={{ maxWidth: 1240, margin: "0 auto", padding: "28px 24px" }}>
-      <NoPermission isPage />
+      <NoPermission />
     </div>
   );
 }
 
-interface NoPermissionProps {
-  /** Whether nothing else is on the page, such as the title of a study. */
-  readonly isPage?: boolean;
-}
-
-export function NoPermission({ isPage = false }: NoPermissionProps): JSX.Element {
+export function NoPermission(): JSX.Element {
   const { t } = useTexts();
   const account = useAccount().data;
   return (
     <EmptyState
-      isPage={isPage}
       icon="lock"
       title={t("forbidden.title")}
       action={
@@ -54,7 +48,6 @@ export function PageNotFound(): JSX.Element {
   useTitle(t("nowhere.title"));
   return (
     <EmptyState
-      isPage
       icon="info"
       title={t("nowhere.title")}
       action={

@@ -29,7 +29,7 @@ export function AnalysisCard({ view, alpha }: AnalysisCardProps): JSX.Element {
           {view.why_no_result}
         </Notice>
       ) : (
-        <PrimaryResultBox result={view.result} alpha={alpha} />
+        <Result result={view.result} alpha={alpha} />
       )}
       <h3 className={classes.small}>{t("prereg.excluded", { count: view.excluded.length })}</h3>
       {view.excluded.length === 0 ? (
@@ -47,13 +47,12 @@ export function AnalysisCard({ view, alpha }: AnalysisCardProps): JSX.Element {
   );
 }
 
-interface PrimaryResultBoxProps {
+interface ResultProps {
   readonly result: PrimaryResult;
   readonly alpha: number;
 }
 
-/** The preregistered test: its sentence, how p compares with the declared level, its numbers. */
-export function PrimaryResultBox({ result, alpha }: PrimaryResultBoxProps): JSX.Element {
+function Result({ result, alpha }: ResultProps): JSX.Element {
   const { t } = useTexts();
   return (
     <div className={classes.result}>

@@ -91,12 +91,7 @@ function NotPreregistered({ study }: { readonly study: StudyDetail }): JSX.Eleme
   );
 }
 
-/** How the analysis differs from its declaration, and what else a reader has to know. */
-export function Deviations({
-  deviations,
-}: {
-  readonly deviations: readonly Deviation[];
-}): JSX.Element {
+function Deviations({ deviations }: { readonly deviations: readonly Deviation[] }): JSX.Element {
   const { t } = useTexts();
   const real = deviations.filter(({ is_note }) => !is_note);
   const notes = deviations.filter(({ is_note }) => is_note);

@@ -1698,6 +1698,46 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/road": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Session Road
+         * @description Return how a session's road goes, its runs, and how the participant crossed.
+         */
+        readonly get: operations["get_session_road_api_sessions__session_id__road_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/sessions/{session_id}/road/{run_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Road Record
+         * @description Return the record of a run as JSON lines (docs/crossing.md).
+         */
+        readonly get: operations["get_road_record_api_sessions__session_id__road__run_id__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/sessions/{session_id}/streams": {
         readonly parameters: {
             readonly query?: never;
@@ -4881,7 +4921,7 @@ export interface components {
              * Code
              * @enum {string}
              */
-            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "road.unneeded" | "road.missing" | "road.process" | "road.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
             /**
              * Details
              * @default []
@@ -4893,7 +4933,7 @@ export interface components {
              * Key
              * @enum {string}
              */
-            readonly key: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "lab_trackers" | "feet" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
+            readonly key: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "lab_trackers" | "feet" | "storage" | "disk" | "latency" | "road" | "instruments" | "configuration" | "language";
             /** Limit */
             readonly limit?: number | null;
             readonly override?: components["schemas"]["Override"] | null;
@@ -5459,6 +5499,40 @@ export interface components {
             readonly password: string;
             /** Username */
             readonly username: string;
+        };
+        /**
+         * CrossingView
+         * @description How the participant crossed once, see `RoadCrossing`; times are the phase's active time.
+         */
+        readonly CrossingView: {
+            /** Closest M */
+            readonly closest_m: number | null;
+            /** Collision Car */
+            readonly collision_car: string | null;
+            /** Collision S */
+            readonly collision_s: number | null;
+            /** Collision Speed M S */
+            readonly collision_speed_m_s: number | null;
+            /** Gap Accepted S */
+            readonly gap_accepted_s: number | null;
+            /** Gaps Refused S */
+            readonly gaps_refused_s: readonly number[];
+            /** Is Across */
+            readonly is_across: boolean;
+            /** Least Post Encroachment S */
+            readonly least_post_encroachment_s: number | null;
+            /** Least Time To Collision S */
+            readonly least_time_to_collision_s: number | null;
+            /** Number */
+            readonly number: number;
+            /** Phase Id */
+            readonly phase_id: number;
+            /** Steps Off S */
+            readonly steps_off_s: number | null;
+            /** Steps On S */
+            readonly steps_on_s: number | null;
+            /** Waited S */
+            readonly waited_s: number;
         };
         /**
          * CurrentView
@@ -7523,46 +7597,6 @@ export interface components {
             readonly tracker: string;
         };
         /**
-         * ListedSession
-         * @description A row in a study's list of sessions; `step` is null unless the session runs.
-         */
-        readonly ListedSession: {
-            /** Bodies */
-            readonly bodies?: readonly (string | null)[] | null;
-            /**
-             * Created At
-             * Format: date-time
-             */
-            readonly created_at: string;
-            /** Ended At */
-            readonly ended_at: string | null;
-            /** Id */
-            readonly id: string;
-            /**
-             * Kind
-             * @enum {string}
-             */
-            readonly kind: "people" | "simulated" | "test" | "expert";
-            /** Participant Code */
-            readonly participant_code: string;
-            /** Sequence */
-            readonly sequence: readonly number[] | null;
-            /** Shortfalls */
-            readonly shortfalls: readonly components["schemas"]["Shortfall"][] | null;
-            /** Simulated */
-            readonly simulated: boolean;
-            /** Started At */
-            readonly started_at: string | null;
-            /**
-             * Status
-             * @enum {string}
-             */
-            readonly status: "planned" | "active" | "completed" | "aborted" | "withdrawn";
-            readonly step?: components["schemas"]["StepBrief"] | null;
-            /** Study Version */
-            readonly study_version: number;
-        };
-        /**
          * LiveView
          * @description All doors and sources. `turned_away`: packets of new senders, of which there were too many.
          *
@@ -8377,7 +8411,7 @@ export interface components {
              * Found
              * @enum {string}
              */
-            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "road.unneeded" | "road.missing" | "road.process" | "road.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
             /** Reason */
             readonly reason: string;
         };
@@ -8390,7 +8424,7 @@ export interface components {
              * Check
              * @enum {string}
              */
-            readonly check: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "lab_trackers" | "feet" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
+            readonly check: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "lab_trackers" | "feet" | "storage" | "disk" | "latency" | "road" | "instruments" | "configuration" | "language";
             /** Reason */
             readonly reason: string;
         };
@@ -8749,7 +8783,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "questionnaire" | "debrief";
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "road_crossing" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
             /** Latency Off */
@@ -9564,7 +9598,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "questionnaire" | "debrief";
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "road_crossing" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
             /** Limb */
@@ -9740,6 +9774,63 @@ export interface components {
         readonly Reveal: {
             /** Reason */
             readonly reason: string;
+        };
+        /**
+         * RoadNow
+         * @description How the newest scene goes: `problem` says why it broke off, empty if it did not.
+         */
+        readonly RoadNow: {
+            /** Cars */
+            readonly cars: number;
+            /** Guesses */
+            readonly guesses: number;
+            /** Is Heard */
+            readonly is_heard: boolean;
+            /** Is Over */
+            readonly is_over: boolean;
+            /** Phase Id */
+            readonly phase_id: number;
+            /** Problem */
+            readonly problem: string;
+            /** Steps */
+            readonly steps: number;
+        };
+        /**
+         * RoadRunView
+         * @description One run of the road during a phase, see `RoadRun`.
+         */
+        readonly RoadRunView: {
+            /**
+             * Began At
+             * Format: date-time
+             */
+            readonly began_at: string;
+            /** Begins At S */
+            readonly begins_at_s: number;
+            /** Crossings */
+            readonly crossings: readonly components["schemas"]["CrossingView"][];
+            /** Ended */
+            readonly ended: string;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Guesses */
+            readonly guesses: number;
+            /** Id */
+            readonly id: string;
+            /** Part */
+            readonly part: number;
+            /** Phase Id */
+            readonly phase_id: number;
+            /** Reason */
+            readonly reason: string;
+            /** Seed */
+            readonly seed: number;
+            /** Sha256 */
+            readonly sha256: string | null;
+            /** Steps */
+            readonly steps: number;
+            /** Worst Guess M */
+            readonly worst_guess_m: number | null;
         };
         /**
          * RunningTest
@@ -10095,6 +10186,19 @@ export interface components {
             readonly study: string;
         };
         /**
+         * SessionRoad
+         * @description The road of a session; `missing` says what its study needs that is not installed.
+         */
+        readonly SessionRoad: {
+            /** Has Road */
+            readonly has_road: boolean;
+            /** Missing */
+            readonly missing: string;
+            readonly now: components["schemas"]["RoadNow"] | null;
+            /** Runs */
+            readonly runs: readonly components["schemas"]["RoadRunView"][];
+        };
+        /**
          * SessionRoom
          * @description The disk space used by one session.
          */
@@ -10117,6 +10221,51 @@ export interface components {
             readonly participant_code: string;
             /** Study Key */
             readonly study_key: string;
+        };
+        /**
+         * SessionSummary
+         * @description A row in a list of sessions.
+         *
+         *     `sequence`: the latencies of its blocks in ms. `bodies`: the body worn at each of them, null for
+         *     that of the configuration; null instead of the list for blinded readers, and where latencies
+         *     tell the conditions apart.
+         *     `shortfalls`: the rules of its study that a completed session does not meet; it is valid if
+         *     there are none. Null if the study has no rules, or the session is not completed.
+         */
+        readonly SessionSummary: {
+            /** Bodies */
+            readonly bodies?: readonly (string | null)[] | null;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "people" | "simulated" | "test" | "expert";
+            /** Participant Code */
+            readonly participant_code: string;
+            /** Sequence */
+            readonly sequence: readonly number[] | null;
+            /** Shortfalls */
+            readonly shortfalls: readonly components["schemas"]["Shortfall"][] | null;
+            /** Simulated */
+            readonly simulated: boolean;
+            /** Started At */
+            readonly started_at: string | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "planned" | "active" | "completed" | "aborted" | "withdrawn";
+            /** Study Version */
+            readonly study_version: number;
         };
         /**
          * SessionTrackers
@@ -10798,25 +10947,6 @@ export interface components {
             readonly simulated: boolean;
         };
         /**
-         * StepBrief
-         * @description Where a running session is: the step's index, counted from 0, of how many, and what it is.
-         */
-        readonly StepBrief: {
-            /** Index */
-            readonly index: number;
-            /**
-             * Kind
-             * @enum {string}
-             */
-            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "questionnaire" | "debrief";
-            /** Limb */
-            readonly limb: ("hand" | "foot") | null;
-            /** Paused */
-            readonly paused: boolean;
-            /** Steps */
-            readonly steps: number;
-        };
-        /**
          * StepCurveView
          * @description The course of a step response on the whole body, and of the motor's torque.
          *
@@ -10891,7 +11021,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "questionnaire" | "debrief";
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "road_crossing" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
             /** Limb */
@@ -11501,7 +11631,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "questionnaire" | "debrief";
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "road_crossing" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
             /** Length S */
@@ -16272,6 +16402,87 @@ export interface operations {
             };
         };
     };
+    readonly get_session_road_api_sessions__session_id__road_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SessionRoad"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_road_record_api_sessions__session_id__road__run_id__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly run_id: string;
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The run's record. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/jsonl": unknown;
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly get_streams_api_sessions__session_id__streams_get: {
         readonly parameters: {
             readonly query?: never;
@@ -17793,7 +18004,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": readonly components["schemas"]["ListedSession"][];
+                    readonly "application/json": readonly components["schemas"]["SessionSummary"][];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

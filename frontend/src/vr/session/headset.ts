@@ -10,7 +10,8 @@ import { GOAL_PARTS } from "@shared/avatar/goals";
 import type { Place as Pose } from "@shared/avatar/hips";
 import type { Bodies, BodiesFrame } from "../bodies/bodies";
 import type { Measures } from "../calibration";
-import { layoutsOf, Phases, type TaskLayout, type TimedRun } from "../tasks";
+import { RoadGround, type RoadLink } from "../road";
+import { layoutsOf, Phases, RoadRun, type TaskLayout, type TimedRun } from "../tasks";
 import {
   FINGER_VALUES_PER_FRAME,
   type HeadsetState,
@@ -22,7 +23,7 @@ import {
 import { SteadyGoals } from "../tracking/steady";
 import type { GoalPart, GoalState, TrackedFrame, TrackingSource } from "../tracking/tracked";
 import { Calibrating, type Keep } from "./calibrating";
-import type { Guide, Place, PrepareBodies, Scenery } from "./ports";
+import type { Guide, OpenRoad, Place, PrepareBodies, Scenery, StreetView } from "./ports";
 import { Recorder } from "./recorder";
 import { SleepWatch } from "./sleep";
 
@@ -37,6 +38,8 @@ export interface HeadsetParts {
   /** The start square is there, in the world of the tracked frames so far. */
   readonly onSquare: (worldFromSquare: Pose) => void;
   readonly prepareBodies: PrepareBodies;
+  /** None in tests of studies without a road. */
+  readonly openRoad?: OpenRoad;
   readonly scenery: Scenery;
   /** Panels and how one stops; none in tests of the loop alone. */
   readonly guide?: Guide;
@@ -73,6 +76,8 @@ export class Headset {
   #isFrozen = false;
   #isLookedAt = true;
   readonly #freezable = new ShownPose();
+  readonly #ground: RoadGround | null;
+  #road: RoadLink | null = null;
 
   constructor(parts: HeadsetParts) {
     this.#parts = parts;
@@ -86,12 +91,15 @@ export class Headset {
       onChange: () => this.#steady.restart(),
       onSquare: parts.onSquare,
     });
-    this.#phases = new Phases(layoutsOf(parts.telemetry.welcome.tasks), {
-      report: (reports) => this.#report(reports),
-      enter: (order, layout) => this.#enterPhase(order, layout),
+    const { tasks, road } = parts.telemetry.welcome;
+    this.#ground = road === undefined ? null : new RoadGround(road);
+    const around = {
+      report: (reports: readonly ReportBody[]) => this.#report(reports),
+      enter: (order: PhaseOrder, layout: TaskLayout | null) => this.#enterPhase(order, layout),
       leave: () => this.#leavePhase(),
       touchingParts: () => this.#bodies?.touchingParts ?? [],
-    });
+    };
+    this.#phases = new Phases(layoutsOf(tasks), around, road ?? null);
   }
 
   /** The time of the newest frame, s. */
@@ -150,7 +158,9 @@ export class Headset {
     this.#isFrozen = this.#phases.run?.isFrozen ?? false;
     const bodies = this.#bodies;
     if (bodies !== null) {
-      const goals = this.#steady.steady(tracked, calibrating.calibrator.goals(tracked));
+      const steady = this.#steady.steady(tracked, calibrating.calibrator.goals(tracked));
+      const isOnRoad = this.#ground !== null && this.#phases.run instanceof RoadRun;
+      const goals = isOnRoad ? this.#ground.carried(steady, hipsZM(bodies)) : steady;
       bodies.step({ timeS, goals, fingers: this.#fingersOf(tracked) });
       this.#perform(bodies, state, tracked);
     }
@@ -160,7 +170,8 @@ export class Headset {
     const calibration = calibrating.prompt;
     const moment = { timeS, place, state, tracked, run, calibration };
     const cover = guide?.follow(moment) ?? "none";
-    scenery.show({ ...moment, bodies: shown, isFrozen: this.#isFrozen, cover });
+    const street = this.#streetAround(run, timeS);
+    scenery.show({ ...moment, bodies: shown, street, isFrozen: this.#isFrozen, cover });
     this.#recorder.send(timeS);
   }
 
@@ -202,6 +213,7 @@ export class Headset {
 
   dispose(): void {
     this.leave("closed");
+    this.#road?.close();
     this.#bodies?.dispose();
     this.#bodies = null;
   }
@@ -230,6 +242,7 @@ export class Headset {
     const { connected } = telemetry.status;
     const goesOn = this.#isSeen && (connected || telemetry.welcome.on_disconnect === "continue");
     const { run } = phases;
+    if (run instanceof RoadRun) this.#walk(run, shown);
     // The newest frame may have been computed before the boxes of this phase were there.
     phases.frame(timeS, shown.touched.length === this.#touchCount ? shown : null, goesOn);
     if (run !== null) this.#recorder.setActive(run.activeS(timeS));
@@ -323,7 +336,26 @@ export class Headset {
     ]);
   }
 
+  /** Say where the participant is on the road; a scene that broke off stops the clock. */
+  #walk(run: RoadRun, { remote }: BodiesFrame): void {
+    const timeS = this.#timeS;
+    const [x = 0, , z = 0] = remote;
+    this.#road ??=
+      this.#parts.openRoad?.(run.order.phase_id, run.activeS(timeS), run.standsAt(x, z)) ?? null;
+    this.#road?.say(run.walk(timeS, x, z), run.clockRuns);
+    if (this.#road?.problem != null && run.clockRuns) this.stop("road");
+  }
+
+  #streetAround(run: TimedRun | null, timeS: number): StreetView | null {
+    if (this.#ground === null || this.#bodies === null || !(run instanceof RoadRun)) return null;
+    const sunkM = this.#ground.sunkM(hipsZM(this.#bodies));
+    const others = this.#road?.others ?? NOBODY;
+    return { sunkM, others, activeS: run.activeS(timeS) };
+  }
+
   #leavePhase(): void {
+    this.#road?.close();
+    this.#road = null;
     this.#bodies?.setLatency(0);
     this.#bodies?.showSurfaces([]);
     this.#recorder.flush(this.#timeS);
@@ -368,6 +400,11 @@ export class Headset {
     return this.calibrating.isDue ? "calibrating" : "stepping_in";
   }
 }
+
+const NOBODY = { activeS: 0, actors: [] };
+
+/** Where the shown body's hips are, z; 0 before there is one. */
+const hipsZM = (bodies: Bodies): number => bodies.latest()?.remote[2] ?? 0;
 
 /** What the participant saw last: it stays in view while the avatar is frozen. */
 class ShownPose {

@@ -23,6 +23,7 @@ function scene() {
       tracked: new FakeSource().read(1),
       bodies: null,
       run: null,
+      street: null,
       isFrozen: false,
       calibration: prompt as View["calibration"],
       cover: "none",

@@ -1,6 +1,6 @@
 /** What the participant sees in each place of the visit: the world, told what is to be seen. */
 import type { Limb, TimedRun } from "../tasks";
-import { BoxRun, currentGoal, displayedNumbers, surfaceColours } from "../tasks";
+import { BoxRun, currentGoal, displayedNumbers, RoadRun, surfaceColours } from "../tasks";
 import type { TrackedFrame, TrackingDevice } from "../tracking/tracked";
 import type { Device, TaskShown, Visible, World } from "../world";
 import type { Scenery, View } from "./ports";
@@ -36,6 +36,7 @@ export class WorldScenery implements Scenery {
       visible,
       devices: place === "acting" ? NO_DEVICES : devicesOf(tracked),
       task: isTask ? this.#taskOf(run) : null,
+      street: view.street,
       remainingS: run === null ? null : remainingS(run, timeS),
       completed: isTask ? run.completed : null,
       isFrozen: view.isFrozen,
@@ -50,7 +51,7 @@ export class WorldScenery implements Scenery {
       // In free movement people compare their own body with the one that they act with. In the
       // mirror check before stepping in they see what the tracking says, not the study's avatar.
       local:
-        (isActing && run?.order.limb === null) ||
+        (isActing && run?.order.limb === null && !(run instanceof RoadRun)) ||
         (place === "calibrating" && calibration?.step === "mirror" && bodies !== null),
       remote: isActing,
       // Where the figure stands one is asked to stand before the measuring poses, too; and it is
@@ -68,6 +69,7 @@ export class WorldScenery implements Scenery {
   #setups(run: TimedRun | null): readonly Limb[] {
     if (run === null) return NO_SETUPS;
     const { limb } = run.order;
+    if (run instanceof RoadRun) return NO_SETUPS;
     return limb === null ? this.#limbs : this.#limbs.filter((one) => one === limb);
   }
 

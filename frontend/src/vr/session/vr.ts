@@ -12,6 +12,7 @@ import {
   openBodiesInWorker,
 } from "../bodies";
 import type { Measures } from "../calibration";
+import { RoadLink, type RoadLinkOptions } from "../road";
 import { layoutsOf } from "../tasks";
 import type { TelemetryClient } from "../telemetry";
 import {
@@ -28,7 +29,6 @@ import { loadModel, requestAvatars } from "./avatars";
 import { Headset } from "./headset";
 import { drawIn, FRAME_RATE_HZ, requestImmersive } from "./immersive";
 import type { Granted, Inspection } from "./inspection";
-import { Pace } from "./pace";
 import { deskOf } from "./panels/desk";
 import { VisitPanels } from "./panels/visitPanels";
 import { WorldScenery } from "./scenery";
@@ -45,6 +45,8 @@ export interface VrParts {
 
 const NEAR_M = 0.05;
 const FAR_M = 50;
+/** A study with a road: its cars come from over a hundred metres. */
+const STREET_FAR_M = 260;
 
 export class Vr {
   readonly #parts: VrParts;
@@ -70,13 +72,17 @@ export class Vr {
   constructor(parts: VrParts) {
     this.#parts = parts;
     const { telemetry, withFingers, onFailure } = parts;
-    const { tasks, appearance, language } = telemetry.welcome;
+    const { tasks, appearance, language, road } = telemetry.welcome;
     this.#renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
     this.#renderer.xr.enabled = true;
     this.#renderer.xr.setReferenceSpaceType("local-floor");
     const layouts = layoutsOf(tasks);
     const palette = appearance === undefined ? STANDARD : paletteOf(appearance);
-    this.#world = new World({ layouts, palette, language });
+    if (road !== undefined) {
+      this.#camera.far = STREET_FAR_M;
+      this.#camera.updateProjectionMatrix();
+    }
+    this.#world = new World({ layouts, palette, language, road });
     this.#tracking = new WebXrTracking(
       {
         onSpace: (space) => {
@@ -107,6 +113,7 @@ export class Vr {
       source: this.#tracking,
       keep: localStorage,
       onSquare: (worldFromSquare) => this.#tracking.moveSquare(worldFromSquare),
+      openRoad: (phaseId, activeS, place) => openRoad(parts.token, { phaseId, activeS, place }),
       scenery: new WorldScenery(this.#world, [...layouts.keys()]),
       prepareBodies: (measures, named) => this.#prepareBodies(measures, named),
       onBodyWorn: (body) => this.#wear(body),
@@ -144,13 +151,9 @@ export class Vr {
   }
 
   /** Show the study on this screen instead of in VR, moved by a source of its own. */
-  showOnScreen(
-    host: HTMLElement,
-    source: TrackingSource,
-    onPace: (slowHz: number | null) => void = () => undefined,
-  ): void {
+  showOnScreen(host: HTMLElement, source: TrackingSource): void {
     this.#world.sounds.resume();
-    const screen = { host, source: new Watched(source), pace: new Pace(), onPace };
+    const screen = { host, source: new Watched(source) };
     this.#screen = screen;
     this.#headset.trackBy(screen.source);
     host.append(this.#renderer.domElement);
@@ -196,8 +199,7 @@ export class Vr {
     this.#panels.guard(this.#boundary.corners(frame, room.space), isNew);
   }
 
-  #frameOnScreen(timeMs: number, { host, source, pace, onPace }: OnScreen): void {
-    onPace(pace.note(timeMs / 1000));
+  #frameOnScreen(timeMs: number, { host, source }: OnScreen): void {
     const { clientWidth: width, clientHeight: height } = host;
     const canvas = this.#renderer.domElement;
     const ratio = window.devicePixelRatio;
@@ -209,8 +211,6 @@ export class Vr {
       this.#renderer.setSize(width, height);
       this.#camera.aspect = width / Math.max(1, height);
       this.#camera.updateProjectionMatrix();
-      const halfHeight = Math.tan((this.#camera.fov * Math.PI) / 360);
-      this.#panels.fitWindow(Math.atan(this.#camera.aspect * halfHeight));
     }
     this.#headset.frame(timeMs / 1000, null);
     this.#frames++;
@@ -346,13 +346,17 @@ function openTrackers(token: string, trackers: ServerTrackers): TrackerLink {
   return new TrackerLink({ url, token, trackers, clock: () => performance.now() / 1000 });
 }
 
+/** Open the socket over which the study's road comes to this headset. */
+function openRoad(token: string, phase: Omit<RoadLinkOptions, "url" | "token">): RoadLink {
+  const { protocol, host } = window.location;
+  const url = `${protocol === "https:" ? "wss" : "ws"}://${host}/api/vr/road`;
+  return new RoadLink({ ...phase, url, token });
+}
+
 /** The study on a screen: where it is drawn, and what moves the participant. */
 interface OnScreen {
   readonly host: HTMLElement;
   readonly source: Watched;
-  readonly pace: Pace;
-  /** Called with every frame: the pictures a second if they are too few, else null. */
-  readonly onPace: (slowHz: number | null) => void;
 }
 
 /** A source whose newest frame the camera also follows. */

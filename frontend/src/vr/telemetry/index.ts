@@ -23,6 +23,7 @@ export type {
   HeadsetState,
   PanelOrder,
   PhaseOrder,
+  Road,
   Welcome,
 } from "./wire/fromServer";
 export { serverMessage } from "./wire/fromServer";

@@ -109,7 +109,10 @@ export class SkinnedBody implements Body3d {
     if (!this.#bones.place(this.#values)) return;
     this.group.visible = true;
     for (const { source, seen, glass } of this.#drawn) {
-      if (source.skin >= 0) continue;
+      if (source.skin >= 0) {
+        if (this.#mirror !== null) glass?.matrixWorld.copy(this.#mirror.matrix);
+        continue;
+      }
       // A rigid mesh moves with its node; a skin is in the world already.
       const world = this.#bones.nodeWorld(source.node);
       seen.matrixWorld.copy(world);

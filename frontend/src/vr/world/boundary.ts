@@ -3,6 +3,7 @@
  * floor where it does not. This module imports three.js.
  */
 import { BufferGeometry, Float32BufferAttribute, Mesh, MeshBasicMaterial } from "three";
+import type { Road } from "../telemetry";
 import type { Setup } from "./setups";
 
 /** People lean and step to the side of the boxes, metres. */
@@ -16,6 +17,11 @@ export interface FloorArea {
   readonly maxZ: number;
 }
 
+/** From the start square over the road to the same place on the other side, metres. */
+export function wayAcrossM({ road, starts_behind_kerb_m }: Road): number {
+  return 2 * (road.lane_width_m + starts_behind_kerb_m);
+}
+
 /** What is wrong with a boundary; null: nothing. */
 export type BoundaryProblem = "missing" | "too_small" | null;
 
@@ -25,10 +31,10 @@ export interface FloorPoint {
   readonly z: number;
 }
 
-/** What the setups and the place of the start square need, with the margin. */
-export function areaOf(setups: Iterable<Setup>): FloorArea {
+/** What the setups, the start square and the way across a road (m ahead) need, with the margin. */
+export function areaOf(setups: Iterable<Setup>, aheadM = 0): FloorArea {
   const xs = [0];
-  const zs = [0];
+  const zs = [0, -aheadM];
   for (const { surfaces } of setups) {
     for (const { centerM, halfSizeM } of surfaces) {
       xs.push(centerM[0] - halfSizeM[0], centerM[0] + halfSizeM[0]);

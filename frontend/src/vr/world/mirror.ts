@@ -12,14 +12,28 @@ import { Matrix4, type Quaternion, type Vector3 } from "three";
 /** A rectangle in the wall z = `planeZM`, standing on the floor, its middle at x = 0. Metres. */
 export class Mirror {
   /** From the world to its reflection, and back: z -> 2 planeZM - z. */
-  readonly matrix: Matrix4;
+  readonly matrix = new Matrix4();
+  readonly #wallZM: number;
+  #planeZM: number;
 
   constructor(
-    readonly planeZM: number,
+    planeZM: number,
     readonly widthM = 1.8,
     readonly heightM = 2,
   ) {
-    this.matrix = new Matrix4().makeScale(1, 1, -1).setPosition(0, 0, 2 * planeZM);
+    this.#wallZM = planeZM;
+    this.#planeZM = planeZM;
+    this.isThere = true;
+  }
+
+  get planeZM(): number {
+    return this.#planeZM;
+  }
+
+  /** Whether it hangs on its wall; if not, all reflections are farther away than anybody sees. */
+  set isThere(isThere: boolean) {
+    this.#planeZM = isThere ? this.#wallZM : FAR_AWAY_M;
+    this.matrix.makeScale(1, 1, -1).setPosition(0, 0, 2 * this.#planeZM);
   }
 
   reflectPoint(point: Vector3): Vector3 {
@@ -36,6 +50,7 @@ export class Mirror {
   }
 }
 
+const FAR_AWAY_M = -10_000;
 /** Everything that can be reached stays this far in front of the glass, metres. */
 const REACH_M = 0.5;
 const NEAREST_Z_M = -1.6;

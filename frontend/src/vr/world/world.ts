@@ -13,6 +13,7 @@ import type { ArmsM } from "@shared/stage/skin/arms";
 import type { BodyModel } from "@shared/stage/skin/bodyModel";
 import { type Camera, Color, Group, Scene, type WebGLRenderer } from "three";
 import type { Limb } from "../tasks";
+import type { Road } from "../telemetry";
 import type { Palette } from "./appearance";
 import { Board, boardWords } from "./board";
 import { type Body3d, type Look, PlainBody, SkinnedBody, type Wearable } from "./bodies3d";
@@ -23,6 +24,7 @@ import {
   boundaryProblem,
   type FloorPoint,
   sizeOf,
+  wayAcrossM,
 } from "./boundary";
 import { Curtain, PANELS_ORDER } from "./curtain";
 import { type Device, Devices } from "./devices";
@@ -33,6 +35,7 @@ import { type Setup, Setups, type TaskShown } from "./setups";
 import { Shadows } from "./shadows";
 import { tPose } from "./skeleton";
 import { Sounds } from "./sounds";
+import { Street, type StreetShown } from "./street";
 
 export interface WorldOptions {
   /** The layouts of the study's tasks. */
@@ -40,6 +43,8 @@ export interface WorldOptions {
   readonly palette: Palette;
   /** Of the participant, for the words at the mirror. */
   readonly language: string;
+  /** The road that participants cross, if the study has one. */
+  readonly road?: Road | undefined;
   /** False leaves out what stands behind the glass, for comparisons with other mirrors. */
   readonly hasDouble?: boolean;
 }
@@ -79,6 +84,8 @@ export interface WorldFrame {
   /** Shown at the mirror; null: not shown. */
   readonly remainingS: number | null;
   readonly completed: number | null;
+  /** The street instead of the room; null: the room. */
+  readonly street?: StreetShown | null;
   /** Bodies stay as they are; the view never does. */
   readonly isFrozen: boolean;
   /** Hide the room within 200 ms, or show it again. Panels stay visible. */
@@ -101,6 +108,7 @@ export class World {
   readonly #board: Board;
   readonly #shadows: Shadows;
   readonly #devices: Devices;
+  readonly #street: Street | null;
   readonly #curtain = new Curtain();
   readonly #area;
   readonly #line;
@@ -116,8 +124,10 @@ export class World {
   #completedBefore: number | null = null;
   #wasFrozen = false;
 
-  constructor({ layouts, palette, language, hasDouble = true }: WorldOptions) {
-    this.#area = areaOf(layouts.values());
+  constructor({ layouts, palette, language, road, hasDouble = true }: WorldOptions) {
+    this.#street = road === undefined ? null : new Street(road);
+    if (this.#street !== null) this.scene.add(this.#street.group);
+    this.#area = areaOf(layouts.values(), road === undefined ? 0 : wayAcrossM(road));
     const nearest = [...layouts.values()].flatMap(({ surfaces }) =>
       surfaces.map(({ centerM, halfSizeM }) => centerM[2] - halfSizeM[2]),
     );
@@ -131,7 +141,7 @@ export class World {
     this.#line = boundaryLine(this.#area);
     this.#line.visible = false;
     this.panels.renderOrder = PANELS_ORDER;
-    this.scene.background = new Color("#d8d7d2");
+    this.scene.background = ROOM;
     this.scene.add(makeLights(), this.#room, this.#setups.mesh, this.#shadows.mesh);
     this.scene.add(
       this.#board.mesh,
@@ -218,14 +228,20 @@ export class World {
 
   show(frame: WorldFrame): void {
     const { visible, task } = frame;
+    const street = this.#street === null ? null : (frame.street ?? null);
+    this.#street?.show(street);
+    if (this.#reflecting !== null) this.#reflecting.isThere = street === null;
+    this.scene.background = street === null ? ROOM : SKY;
     this.#showBodies(frame);
     this.#devices.show(visible.devices ? frame.devices : NO_DEVICES);
     this.#setups.show(visible.setups, task);
     this.#board.show(frame.remainingS, frame.completed);
-    const beyond = frame.eyes === null ? 0 : this.#nearness(frame.eyes.positionM[2]);
+    this.#board.mesh.visible = street === null && frame.remainingS !== null;
+    const beyond =
+      frame.eyes === null || street !== null ? 0 : this.#nearness(frame.eyes.positionM[2]);
     const isAtOnce = frame.isCurtainAtOnce ?? false;
     this.#curtain.show(frame.timeS, frame.isCurtainDrawn || isAtOnce, beyond, isAtOnce);
-    this.#hideCovered();
+    this.#hideCovered(street !== null);
     this.#sound(frame);
     this.#wasFrozen = frame.isFrozen;
   }
@@ -233,6 +249,7 @@ export class World {
   dispose(): void {
     for (const name of this.#wardrobe.keys()) this.#clear(name);
     this.#setups.dispose();
+    this.#street?.dispose();
     this.#board.dispose();
     this.#shadows.dispose();
     this.#devices.dispose();
@@ -245,10 +262,11 @@ export class World {
   }
 
   /** What is behind a curtain that has closed is not drawn. */
-  #hideCovered(): void {
+  #hideCovered(isOnStreet: boolean): void {
     const isOpen = this.#curtain.share < 1;
-    this.#room.visible = isOpen;
+    this.#room.visible = isOpen && !isOnStreet;
     if (isOpen) return;
+    if (this.#street !== null) this.#street.group.visible = false;
     for (const body of this.#bodies.values()) body.group.visible = false;
     this.#shadows.show(null);
     this.#devices.show(NO_DEVICES);
@@ -354,6 +372,8 @@ export class World {
 type Slot = "local" | "remote" | "beside" | "figure";
 const SLOTS: readonly Slot[] = ["local", "remote", "beside", "figure"];
 
+const ROOM = new Color("#d8d7d2");
+const SKY = new Color("#bcd2e4");
 const NO_DEVICES: readonly Device[] = [];
 /** Nearer to the figure's middle than this, one stands in it, metres. */
 const INSIDE_M = 0.28;

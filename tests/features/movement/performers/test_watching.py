@@ -221,6 +221,10 @@ def test_a_pose_is_agreed_by_those_who_run_sessions(
         view = ok(lab.operator.post("/api/trackers/performers/pose", json=wish))
         assert view["performers"][0]["is_t_pose_shown"]
         told(socket, "setup")
+        entries = ok(lab.operator.get("/api/audit"))["entries"]
+        assert ("performer.agreed", "t_pose") in [
+            (one["action"], one["details"].get("pose")) for one in entries
+        ]
         analyst = sign_in(lab, "analyst")
         refused = analyst.post("/api/trackers/performers/pose", json=wish)
         error(refused, 403, "not_allowed")

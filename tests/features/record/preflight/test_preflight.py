@@ -56,6 +56,7 @@ def test_the_checks_of_a_session_that_nobody_has_prepared(lab: Lab) -> None:
         ("storage", "ok", "storage.ok"),
         ("disk", "ok", checks["disk"]["code"]),
         ("latency", "wait", "latency.unmeasured"),
+        ("road", "ok", "road.unneeded"),
         ("instruments", "ok", "instruments.ok"),
         ("configuration", "ok", "configuration.ok"),
         ("language", "ok", "language.ok"),

@@ -24,6 +24,7 @@ MORE = (
     "goal_states",
     "body_calibrations",
     "tracker_alignments",
+    "road_crossings",
     "calibrations",
     "headset_tests",
     "wide",

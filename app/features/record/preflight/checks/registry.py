@@ -16,6 +16,7 @@ from app.features.record.preflight.checks.device import (
 from app.features.record.preflight.checks.feet import FEET
 from app.features.record.preflight.checks.lab_trackers import LAB_TRACKERS
 from app.features.record.preflight.checks.latency import LATENCY
+from app.features.record.preflight.checks.road import ROAD
 from app.features.record.preflight.checks.storage import DISK, STORAGE
 from app.features.record.preflight.checks.study import CONFIGURATION, INSTRUMENTS, LANGUAGE
 from app.texts import Words
@@ -31,6 +32,7 @@ CHECKS: tuple[PreflightCheck, ...] = (
     STORAGE,
     DISK,
     LATENCY,
+    ROAD,
     INSTRUMENTS,
     CONFIGURATION,
     LANGUAGE,

@@ -24,6 +24,7 @@ from app.features.results.analysis.codebook.movement import (
 )
 from app.features.results.analysis.codebook.quality import ALARMS, DOUBTS, QUALITY
 from app.features.results.analysis.codebook.questionnaires import ANSWERS, CORRECTIONS, SCORES
+from app.features.results.analysis.codebook.road import ROAD_CROSSINGS
 from app.features.results.analysis.codebook.sessions import EVENTS, PHASES, SESSIONS
 from app.features.results.analysis.codebook.trackers import TRACKER_ALIGNMENTS, TRACKER_SAMPLES
 from app.features.results.analysis.codebook.wide import WIDE, WIDE_COLUMNS
@@ -48,6 +49,7 @@ TABLES: dict[str, str] = {
     "goal_states": "One row per change in how a headset knew the parts of the body.",
     "body_calibrations": "One row per calibration of a headset to the participant, and part.",
     "tracker_alignments": "One row per alignment of the lab's trackers with a headset, or its end.",
+    "road_crossings": "One row per crossing of the study's road by a participant.",
     "events": "One row per event of a session's log: the audit trail.",
     "wide": "One row per participant who counts; wide_columns.csv describes the columns of values.",
     "wide_columns": "One row per column of values in wide.csv.",
@@ -78,6 +80,7 @@ CODEBOOK: tuple[Column, ...] = (
     *GOAL_STATES,
     *BODY_CALIBRATIONS,
     *TRACKER_ALIGNMENTS,
+    *ROAD_CROSSINGS,
     *EVENTS,
     *WIDE,
     *WIDE_COLUMNS,

@@ -34,6 +34,7 @@ from app.features.results.analysis.tables.questionnaires import (
     corrections_table,
     scores_table,
 )
+from app.features.results.analysis.tables.road import road_crossings_table, road_records
 from app.features.results.analysis.tables.sessions import events_table, sessions_table
 from app.features.results.analysis.tables.tasks import (
     completions_table,
@@ -72,6 +73,8 @@ __all__ = [
     "phases_table",
     "present_course_table",
     "quality_table",
+    "road_crossings_table",
+    "road_records",
     "run_clocks",
     "scores_table",
     "sessions_table",

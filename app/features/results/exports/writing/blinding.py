@@ -14,7 +14,9 @@ import pandas as pd
 
 from app.features.record.sessions import canonical, without_condition
 
-LEFT_OUT = frozenset({"contacts", "completions", "joint_errors", "joint_error_course"})
+LEFT_OUT = frozenset(
+    {"contacts", "completions", "joint_errors", "joint_error_course", "road_crossings"}
+)
 """Tables from which the rows of blinded sessions are left out."""
 EMPTIED = frozenset(
     {

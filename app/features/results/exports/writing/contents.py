@@ -41,6 +41,8 @@ from app.features.results.analysis.tables import (
     joint_errors_table,
     phases_table,
     quality_table,
+    road_crossings_table,
+    road_records,
     scores_table,
     sessions_table,
     tracker_alignments_table,
@@ -49,6 +51,7 @@ from app.features.results.analysis.tables import (
 from app.features.results.exports.names import (
     fingers_path,
     receipt_path,
+    road_path,
     samples_path,
     trackers_path,
 )
@@ -84,6 +87,7 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "goal_states": goal_states_table,
     "body_calibrations": body_calibrations_table,
     "tracker_alignments": tracker_alignments_table,
+    "road_crossings": road_crossings_table,
 }
 EQUIPMENT_FILES: dict[str, Callable[[Session], pd.DataFrame]] = {
     "calibrations": calibrations_table,
@@ -95,6 +99,7 @@ FOLDERS = {
     "samples": ".csv",
     "fingers": ".csv",
     "trackers": ".csv",
+    "road": ".jsonl",
     "receipts": ".json",
     "protocol": ".yaml",
     "imported": ".csv",
@@ -181,7 +186,7 @@ class Contents:
         simulated: bool,  # noqa: FBT001 - a column of the table
         avatar: str,
     ) -> Iterator[Member]:
-        """Yield what was recorded of a session's movement: bodies, fingers, the lab's trackers."""
+        """Yield what was recorded of a session's movement: bodies, fingers, trackers, the road."""
         samples = SampleFile(
             *(self.db, session_id, simulated, avatar), blinded=session_id in self.hidden
         )
@@ -193,6 +198,10 @@ class Contents:
             sent = tracker_samples(self.db, session_id, simulated=simulated, avatar=avatar)
             pieces = csv_pieces_of_many("trackers", sent)
             yield self._member(trackers_path(code, session_id), pieces)
+        # It has where the avatar was: see `blinding`.
+        shown = () if session_id in self.hidden else road_records(self.db, session_id)
+        for phase_id, part, record in shown:
+            yield self._member(road_path(code, session_id, phase_id, part), iter([record]))
 
     def _table(
         self, name: str, table: Callable[[Session, str, Kind], pd.DataFrame]

@@ -39,6 +39,9 @@ Reading the files
   headset said that the eyes were, one row per pose, in the axes of each source and with three
   times: the source's own, the arrival, and the first on the server's clock.
   tracker_alignments.csv says how these axes lay in the headset's.
+  road/, where it is there, holds the record of each run of the study's road as JSON lines: where
+  the participant, cars and walkers were every step, and what was guessed. road_crossings.csv has
+  the measures.
   receipts/ holds one file per session that says how many frames were made, stored and are missing,
   whether the event log was changed, whether the completions follow from the contacts, and which
   latency the avatar really had. "complete": true means that nothing is missing.

@@ -53,9 +53,7 @@ export function PreflightBody({ session, flight, title }: PreflightBodyProps): J
         </Button>
       </div>
       {data === undefined && error === null && (
-        <div className={classes.loading}>
-          <Loader size="sm" type="dots" role="status" aria-label={t("preflight.loading")} />
-        </div>
+        <Loader size="sm" type="dots" role="status" aria-label={t("preflight.loading")} />
       )}
       {error !== null && <Failure error={error} onRetry={() => void refetch()} />}
       {data !== undefined && (

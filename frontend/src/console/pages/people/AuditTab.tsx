@@ -11,7 +11,6 @@ import { useTexts } from "../../i18n";
 import { auditQuery, peopleQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
-import { ScrollBox } from "../../ui/tables";
 import { actorName, KINDS, sentences } from "./auditWords";
 import classes from "./People.module.css";
 
@@ -122,7 +121,7 @@ function Entries({ entries, more, loading, onMore }: EntriesProps): JSX.Element 
   }
   return (
     <>
-      <ScrollBox label={t("audit.kind")} className={classes.frame}>
+      <div className={classes.frame}>
         <table className={classes.trail}>
           <thead>
             <tr>
@@ -139,7 +138,7 @@ function Entries({ entries, more, loading, onMore }: EntriesProps): JSX.Element 
             ))}
           </tbody>
         </table>
-      </ScrollBox>
+      </div>
       <div className={classes.more}>
         {more ? (
           <Button variant="default" loading={loading} onClick={onMore}>

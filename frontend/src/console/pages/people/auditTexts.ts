@@ -66,6 +66,7 @@ export const auditEn = {
   "act.session.overridden": "overrode the failed check “{{check}}” in session {{subject}}",
   "act.device.paired": "a {{device}} was paired with session {{subject}}",
   "act.device.unpaired": "unpaired a device of session {{subject}}",
+  "act.performer.agreed": "agreed that {{performer}} stood in the pose {{pose}} ({{door}})",
   "act.tracker.opened": "opened the door {{door}} for trackers, on {{interface}}, port {{port}}",
   "act.tracker.closed": "closed the door {{door}} for trackers",
   "act.capture.added": "uploaded the capture {{content}} ({{format}})",
@@ -173,6 +174,8 @@ export const auditDe: Readonly<Record<keyof typeof auditEn, string>> = {
     "hat Sitzung {{subject}} freigegeben, obwohl die Prüfung „{{check}}“ nicht bestanden war",
   "act.device.paired": "ein Gerät ({{device}}) wurde mit der Sitzung {{subject}} gekoppelt",
   "act.device.unpaired": "hat ein Gerät der Sitzung {{subject}} entkoppelt",
+  "act.performer.agreed":
+    "hat festgelegt, dass {{performer}} in der Haltung {{pose}} stand ({{door}})",
   "act.tracker.opened":
     "hat die Tür {{door}} für Tracker geöffnet, auf {{interface}}, Port {{port}}",
   "act.tracker.closed": "hat die Tür {{door}} für Tracker geschlossen",

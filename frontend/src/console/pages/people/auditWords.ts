@@ -72,6 +72,7 @@ const SENTENCES: Readonly<Record<string, Key>> = {
   "capture.removed": "act.capture.removed",
   "capture.mapped": "act.capture.mapped",
   "capture.unmapped": "act.capture.unmapped",
+  "performer.agreed": "act.performer.agreed",
   "tracker.opened": "act.tracker.opened",
   "tracker.closed": "act.tracker.closed",
   "avatar.created": "act.avatar.created",

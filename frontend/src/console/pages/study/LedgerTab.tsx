@@ -10,7 +10,6 @@ import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import { Order, orderKey } from "../../ui/Order";
 import { SlotMark } from "../../ui/SlotMark";
-import { ScrollBox } from "../../ui/tables";
 import classes from "./LedgerTab.module.css";
 import { SlotCell } from "./SlotCell";
 import page from "./StudyPage.module.css";
@@ -81,7 +80,7 @@ function Grid({ grid, ledger }: GridProps): JSX.Element {
   const { rows, columns } = grid;
   const next = nextFree(ledger.slots);
   return (
-    <ScrollBox label={t("ledger.order")} className={classes.scroll}>
+    <div className={classes.scroll}>
       <table className={classes.grid}>
         <thead>
           <tr>
@@ -112,7 +111,7 @@ function Grid({ grid, ledger }: GridProps): JSX.Element {
           ))}
         </tbody>
       </table>
-    </ScrollBox>
+    </div>
   );
 }
 

@@ -24,18 +24,11 @@ const LONGEST_CODE = 40;
 
 interface NewSessionProps {
   readonly study: StudyDetail;
-  /** The kind that is chosen at first. */
-  readonly firstKind?: Kind;
   readonly opened: boolean;
   readonly onClose: () => void;
 }
 
-export function NewSession({
-  study,
-  firstKind = "people",
-  opened,
-  onClose,
-}: NewSessionProps): JSX.Element {
+export function NewSession({ study, opened, onClose }: NewSessionProps): JSX.Element {
   const { t } = useTexts();
   return (
     <Modal
@@ -44,23 +37,17 @@ export function NewSession({
       title={t("join.title")}
       closeButtonProps={{ "aria-label": t("action.close") }}
     >
-      <JoinForm study={study} firstKind={firstKind} onClose={onClose} />
+      <JoinForm study={study} onClose={onClose} />
     </Modal>
   );
 }
 
-interface JoinFormProps {
-  readonly study: StudyDetail;
-  readonly firstKind: Kind;
-  readonly onClose: () => void;
-}
-
-function JoinForm({ study, firstKind, onClose }: JoinFormProps): JSX.Element {
+function JoinForm({ study, onClose }: Omit<NewSessionProps, "opened">): JSX.Element {
   const { t, language: spoken } = useTexts();
   const [, navigate] = useLocation();
   const queries = useQueryClient();
   const [code, setCode] = useState("");
-  const [kind, setKind] = useState<Kind>(firstKind);
+  const [kind, setKind] = useState<Kind>("people");
   const [language, setLanguage] = useState(
     study.languages.includes(spoken) ? spoken : (study.languages[0] ?? "en"),
   );

@@ -302,7 +302,6 @@ export class Questionnaire implements PanelContent {
         return this.#become({ name: "refused", error: delivery.error });
       case "stored":
       case "superseded":
-      case "withdrawn":
         this.#become({ name: "done" });
         return onSettled();
       case "unpaired":

@@ -130,13 +130,8 @@ export class Contents {
             );
       case "stepping_in": {
         const how = words(step.holdsController ? "steppingIn.body" : "steppingIn.bodyHands");
-        // The study's own text speaks of grips, which a keyboard does not have.
-        const keys = this.#parts.isWorn() ? "" : words("steppingIn.keys");
         return still({
-          ...prompt("stepping in", step.title ?? words("steppingIn.title"), [
-            step.text ?? how,
-            keys,
-          ]),
+          ...prompt("stepping in", step.title ?? words("steppingIn.title"), [step.text ?? how]),
           isLow: true,
         });
       }

@@ -2,11 +2,12 @@
  * The phases of a session, one after the other, as the server's state orders them: which one runs,
  * when it is entered and left, and what it reports (`app/rehearsal/headset.py` does the same).
  */
-import type { HeadsetState, PhaseOrder } from "../../telemetry";
+import type { HeadsetState, PhaseOrder, Road } from "../../telemetry";
 import type { Touches } from "../contacts";
 import type { Limb, TaskLayout } from "../layout";
 import { TaskRules } from "../state";
 import { BoxRun } from "./boxRun";
+import { RoadRun } from "./roadRun";
 import { FreeRun, type Reports, type TimedRun } from "./timedRun";
 
 /** What the phases need of the headset around them. */
@@ -31,6 +32,8 @@ export class Phases {
   constructor(
     private readonly layouts: ReadonlyMap<Limb, TaskLayout>,
     private readonly around: PhaseSurroundings,
+    /** The study's road, if it has one. */
+    private readonly road: Road | null = null,
   ) {}
 
   /** The phase that runs; null between phases. */
@@ -87,7 +90,8 @@ export class Phases {
     this.#lastPhaseId = order.phase_id;
     this.around.enter(order, layout);
     if (layout === null) {
-      this.#run = new FreeRun(order, timeS);
+      const onRoad = order.has_road === true && this.road !== null;
+      this.#run = onRoad ? new RoadRun(order, this.road, timeS) : new FreeRun(order, timeS);
       return;
     }
     // As the server assumes, which derives the completions again.

@@ -28,8 +28,10 @@ const PhaseOrder = v.object({
   completions: whole,
   pausing: v.boolean(),
   resuming: v.boolean(),
-  // A practice ends once so many tasks are completed; an older server does not send it.
+  // The phase ends once so many tasks or crossings are completed; an older server does not send it.
   until_completions: v.optional(v.nullable(whole), null),
+  /** The participant crosses the welcome's road; left out if not. */
+  has_road: v.optional(v.boolean()),
   /** The body to wear, one of the welcome's `bodies`; left out for that of the configuration. */
   body: v.optional(v.string()),
 });
@@ -111,6 +113,20 @@ const HeadsetState = v.object({
 });
 export type HeadsetState = v.InferOutput<typeof HeadsetState>;
 
+/** A study's road (docs/protocol.md, section 12). */
+const Road = v.object({
+  road: v.object({
+    half_length_m: v.number(),
+    lane_width_m: v.number(),
+    pavement_width_m: v.number(),
+    crossing_width_m: v.nullable(v.number()),
+  }),
+  kerb_height_m: v.number(),
+  starts_behind_kerb_m: v.number(),
+  step_s: v.number(),
+});
+export type Road = v.InferOutput<typeof Road>;
+
 /**
  * Answers a hello: the client's epoch, the position of each stream, the study's tasks and texts.
  */
@@ -132,6 +148,8 @@ const Welcome = v.object({
   bodies: v.optional(v.array(v.string())),
   /** The palettes of the study's boxes, as in its file; a server of an older version has none. */
   appearance: v.optional(v.record(v.string(), v.unknown())),
+  /** The sizes of the road that participants cross; left out if the study has none. */
+  road: v.optional(Road),
 });
 export type Welcome = v.InferOutput<typeof Welcome>;
 

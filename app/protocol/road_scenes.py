@@ -1,9 +1,15 @@
-"""The schema of crossing scenes; metres, seconds, see docs/crossing.md."""
+"""Scenes at a road that persons cross: those of files of their own, and that of a study.
 
-from typing import Annotated, Literal
+Both have the same road, clock and partners. A study comes from whoever may edit studies, so it
+names no commands and no files: its partners are walkers, cars, SUMO, or a process that somebody has
+started on the server's machine. Metres, seconds, see docs/crossing.md.
+"""
 
-from pydantic import BaseModel, ConfigDict, Field
+from typing import Annotated, Literal, Self
 
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from app.protocol.common import refusal
 from app.science.cosimulation import Driver, Flow, Lane, Lateness, Road, Rule
 
 _Finite = Annotated[float, Field(ge=-10_000.0, le=10_000.0, allow_inf_nan=False)]
@@ -67,22 +73,27 @@ class _PartnerFile(_Strict):
     late: LateFile = LateFile()
 
 
-class WalkerFile(_PartnerFile):
-    """A walker of the walking model."""
+class WalkerOfStudy(_PartnerFile):
+    """A walker of the walking model, with given steering parameters."""
 
     kind: Literal["walker"]
     path: Annotated[tuple[_Point, ...], Field(min_length=2, max_length=100)]
     velocity_m_s: Annotated[float, Field(ge=0.1, le=2.0)] = 1.35
     acceleration_m_s2: Annotated[float, Field(ge=0.1, le=2.0)] = 1.0
     angular_per_m: Annotated[float, Field(ge=0.1, le=2.0)] = 1.5
-    model: str | None = Field(
-        default=None, description="A file of `reembody walk fit`, from which the three are drawn."
-    )
-    stature_m: Annotated[float, Field(ge=0.5, le=2.6)] | None = None
     leaves_s: _NotNegative = 0.0
     waits_m: Annotated[float, Field(ge=0.1, le=2.0)] = 0.4
     looks_s: _NotNegative = 1.0
     accepts_s: _NotNegative = 4.0
+
+
+class WalkerFile(WalkerOfStudy):
+    """A walker whose steering parameters may be drawn from a fitted model."""
+
+    model: str | None = Field(
+        default=None, description="A file of `reembody walk fit`, from which the three are drawn."
+    )
+    stature_m: Annotated[float, Field(ge=0.5, le=2.6)] | None = None
 
 
 class PathFile(_PartnerFile):
@@ -114,8 +125,16 @@ class SumoFile(_PartnerFile):
     flows: Annotated[tuple[FlowFile, ...], Field(min_length=1, max_length=20)]
 
 
+class ProcessOfStudy(_PartnerFile):
+    """A process that speaks JSON lines; somebody has started it on the server's machine."""
+
+    kind: Literal["process"]
+    port: Annotated[int, Field(ge=1024, le=65535)]
+    connect_s: _Positive = 30.0
+
+
 class ProcessFile(_PartnerFile):
-    """Any process that speaks JSON lines."""
+    """Any process that speaks JSON lines, which the scene may start itself."""
 
     kind: Literal["process"]
     command: tuple[str, ...] = Field(
@@ -141,3 +160,60 @@ class CrossingFile(_Strict):
         tuple[Annotated[PartnerFile, Field(discriminator="kind")], ...],
         Field(min_length=1, max_length=20),
     ]
+
+
+OfStudy = Annotated[
+    WalkerOfStudy | CarsFile | SumoFile | ProcessOfStudy, Field(discriminator="kind")
+]
+PARTICIPANT = "participant"
+"""The partner and the actor of a study's scene that the headset moves."""
+
+
+class StudyRoad(_Strict):
+    """The road of a study, and what takes part in it beside the participant.
+
+    The participant's start square lies on the pavement, `starts_behind_kerb_m` from the near kerb,
+    and -z of the room leads straight across, over the middle of the crossing if there is one.
+    `kerb_height_m`: how far the carriageway lies below the pavement. `warm_up_s`: how long traffic
+    runs before the phase's clock starts, so that there are cars at once; partners' times count from
+    its beginning. `seed`: with the number of the block and of the attempt it decides the traffic,
+    so that everybody meets the same cars. `participant_late`: what is done when the headset's word
+    of where the participant is does not arrive in time.
+    """
+
+    step_s: _Step = 0.02
+    road: RoadFile = RoadFile(lane_width_m=2.5)
+    kerb_height_m: Annotated[float, Field(ge=0.0, le=0.3)] = 0.12
+    warm_up_s: Annotated[float, Field(ge=0.0, le=120.0)] = 15.0
+    seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 1
+    starts_behind_kerb_m: Annotated[float, Field(ge=0.4, le=5.0)] = 0.8
+    participant_late: LateFile = LateFile()
+    partners: Annotated[tuple[OfStudy, ...], Field(min_length=1, max_length=20)]
+
+    @model_validator(mode="after")
+    def _names_differ(self) -> Self:
+        names = [PARTICIPANT, *(one.name for one in self.partners)]
+        for at, name in enumerate(names):
+            if name in names[:at]:
+                raise refusal(
+                    f"Two partners of the road are called {name!r}.",
+                    value=name,
+                    valid=f"every name once, and none {PARTICIPANT!r}",
+                    remedy="Give this partner another name.",
+                    at=("partners", at - 1, "name"),
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _steps_fit(self) -> Self:
+        for at, one in enumerate(self.partners):
+            stride = (one.step_s or self.step_s) / self.step_s
+            if stride < 1.0 - 1e-6 or abs(stride - round(stride)) > 1e-6:
+                raise refusal(
+                    f"The step of {one.name!r} is not a multiple of the road's.",
+                    value=one.step_s,
+                    valid=f"a multiple of {self.step_s:g} s",
+                    remedy="Change one of the two steps.",
+                    at=("partners", at, "step_s"),
+                )
+        return self

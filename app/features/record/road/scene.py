@@ -1,0 +1,137 @@
+"""One run of a study's road: its partners advance in a thread, and the record goes to the disk."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.adapters.cosimulation import partners_of_study
+from app.features.record.road.participant import Participant
+from app.features.record.road.recording import RunPlan, store_end, store_lines
+from app.models import RoadRun
+from app.platform.context import AppContext
+from app.protocol import StudyRoad
+from app.science.cosimulation import (
+    Clocks,
+    Conductor,
+    CosimulationError,
+    Lateness,
+    Record,
+    Row,
+    Timing,
+    step_line,
+)
+
+log = logging.getLogger(__name__)
+STEPS_IN_CHUNK = 50
+LONGEST_S = 4 * 3600.0
+"""A scene is over when its phase is; this is only the length of its loop."""
+Ended = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class SceneState:
+    """How a scene goes, for the operator; `is_heard`: the headset's socket is open."""
+
+    phase_id: int
+    steps: int
+    guesses: int
+    cars: int
+    is_heard: bool
+    problem: str
+    is_over: bool
+
+
+class RoadScene:
+    """A scene that runs from `start` until its phase ends.
+
+    `participant`: where the socket says where the person is. `on_end` is called from the scene's
+    thread, with the problem if it broke off.
+    """
+
+    def __init__(
+        self, context: AppContext, plan: RunPlan, road: StudyRoad, participant: Participant
+    ) -> None:
+        self.plan, self.participant = plan, participant
+        self.on_end: Ended | None = None
+        self.problem = ""
+        self.is_over = False
+        self._context, self._road = context, road
+        self._lines: list[str] = []
+        self._chunk = 1
+        self._steps = self._guesses = self._cars = 0
+        self._thread = threading.Thread(target=self._run, name="road", daemon=True)
+
+    def start(self) -> None:
+        """Begin the warm-up."""
+        self._thread.start()
+
+    def end(self, *, wait: bool) -> None:
+        """Let it be over; `wait` until all of it is stored."""
+        self.participant.end()
+        if wait:
+            self._thread.join()
+
+    @property
+    def state(self) -> SceneState:
+        """How it goes now."""
+        heard = self.participant.is_heard
+        now = (self.plan.phase_id, self._steps, self._guesses, self._cars, heard)
+        return SceneState(*now, self.problem, self.is_over)
+
+    def _run(self) -> None:
+        try:
+            with partners_of_study(self._road, self.plan.seed) as (partners, _):
+                late = self._road.participant_late.lateness()
+                # A headset that is away for minutes is waited for: its phase is paused meanwhile.
+                patient = Lateness(late.rule, late.patience_s, late.at_most_s, LONGEST_S)
+                together = [(self.participant, patient), *partners]
+                clocks = Clocks(time.perf_counter, self.participant.pace)
+                conductor = Conductor(together, self._road.step_s, clocks)
+                steps = round(LONGEST_S / self._road.step_s)
+                self._finish(*conductor.run(steps, self.plan.header, self._note))
+        except (CosimulationError, OSError) as error:
+            self.problem = str(error)
+            self._finish(Record(self.plan.header, self._road.step_s, (), (), str(error)))
+        except Exception as error:
+            log.exception("the road of session %s has ended", self.plan.session_id)
+            self.problem = f"The scene has failed: {error}"
+        finally:
+            self.is_over = True
+            if self.on_end is not None:
+                self.on_end(self.problem)
+
+    def _note(self, number: int, rows: tuple[Row, ...]) -> None:
+        self._steps = number
+        self._guesses += sum(row.origin == "guessed" for row in rows)
+        self._cars = sum(row.state.kind == "car" for row in rows)
+        self._lines.append(step_line(number, rows, self._road.step_s))
+        if len(self._lines) >= STEPS_IN_CHUNK:
+            self._store()
+
+    def _store(self) -> None:
+        """Store the lines so far; if the disk refuses, they wait for the next second."""
+        if not self._lines:
+            return
+        try:
+            with self._context.database.writing() as db:
+                if db.get(RoadRun, self.plan.id) is not None:
+                    store_lines(db, self.plan.id, self.plan.session_id, self._chunk, self._lines)
+        except Exception as error:
+            log.exception("the road of session %s could not be stored", self.plan.session_id)
+            self._context.background.failed("road", error)
+            return
+        self._context.background.recovered("road")
+        self._chunk += 1
+        self._lines = []
+
+    def _finish(self, record: Record, timing: Timing = Timing((), {})) -> None:  # noqa: B008 - frozen
+        self.problem = record.lost
+        self._lines += record.last_lines()
+        self._store()
+        with self._context.database.writing() as db:
+            row = db.get(RoadRun, self.plan.id)
+            if row is not None:
+                now = self._context.clock.utc_now()
+                store_end(db, row, record, self._road, timing, now)

@@ -1,0 +1,43 @@
+/** Texts of the panel about the road that the participant crosses. */
+export const roadEn = {
+  "road.title": "Road",
+  "road.waits": "Begins with the phase",
+  "road.runs": "{{cars}} cars on the road",
+  "road.unheard": "Waits for the headset: its clock stands",
+  "road.over": "Over",
+  "road.problem": "Broke off: {{problem}}",
+  "road.problem.do": "What is recorded stays. Repeat the phase once the cause is mended.",
+  "road.guesses": "Guessed states",
+  "road.scene": "Scene time",
+  "road.crossing": "Crossing",
+  "road.waited": "Waited",
+  "road.gap": "Gap",
+  "road.refused": "Refused",
+  "road.closest": "Closest",
+  "road.none": "none came",
+  "road.collision": "Collision at {{speed}} m/s",
+  "road.turned": "turned back",
+  "road.record": "Record",
+} as const;
+
+export const roadDe: Record<keyof typeof roadEn, string> = {
+  "road.title": "Straße",
+  "road.waits": "Beginnt mit der Phase",
+  "road.runs": "{{cars}} Autos auf der Straße",
+  "road.unheard": "Wartet auf das Headset: Die Uhr steht",
+  "road.over": "Zu Ende",
+  "road.problem": "Abgebrochen: {{problem}}",
+  "road.problem.do":
+    "Was erfasst ist, bleibt. Wiederholen Sie die Phase, sobald die Ursache behoben ist.",
+  "road.guesses": "Geschätzte Zustände",
+  "road.scene": "Zeit der Szene",
+  "road.crossing": "Überquerung",
+  "road.waited": "Gewartet",
+  "road.gap": "Lücke",
+  "road.refused": "Abgelehnt",
+  "road.closest": "Abstand",
+  "road.none": "keins kam",
+  "road.collision": "Zusammenstoß mit {{speed}} m/s",
+  "road.turned": "umgekehrt",
+  "road.record": "Aufzeichnung",
+};
