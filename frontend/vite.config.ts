@@ -5,10 +5,13 @@ import react from "@vitejs/plugin-react";
 import { defineConfig, type Plugin, type ProxyOptions } from "vite";
 import { helpPages } from "./helpPages.ts";
 import { tabletWorker, WORKER } from "./tabletWorker.ts";
+import { textTables } from "./textTables.ts";
 
 const source = resolve(import.meta.dirname, "src");
 /** The help pages are made from Markdown and pictures outside of `frontend`. */
 const repository = resolve(import.meta.dirname, "..");
+
+const alias = { "@shared": resolve(source, "shared"), "@charts": resolve(source, "charts") };
 
 /** Every folder of `src` with an index.html is a page of its own: console, tablet, ... */
 const pages = readdirSync(source).filter((name) => existsSync(resolve(source, name, "index.html")));
@@ -62,10 +65,14 @@ export default defineConfig({
   root: source,
   cacheDir: resolve(import.meta.dirname, "node_modules/.vite"),
   publicDir: false,
-  plugins: [react(), servePagesLikeTheServer(), helpPages(repository), tabletWorker()],
-  resolve: {
-    alias: { "@shared": resolve(source, "shared"), "@charts": resolve(source, "charts") },
-  },
+  plugins: [
+    react(),
+    servePagesLikeTheServer(),
+    helpPages(repository),
+    tabletWorker(),
+    textTables(source, alias),
+  ],
+  resolve: { alias },
   build: {
     outDir: resolve(import.meta.dirname, "../app/static"),
     emptyOutDir: true,

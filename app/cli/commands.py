@@ -62,12 +62,16 @@ def reembody(
 def score(
     answers: Annotated[Path, typer.Argument(help="CSV with item columns; others are ids.")],
     instrument: Annotated[str, typer.Option(help="Key of the instrument, or its file.")],
+    missing: Annotated[
+        list[str] | None,
+        typer.Option(help="A code of a missing answer besides empty and NA, as -99; repeatable."),
+    ] = None,
 ) -> None:
     """Score a table of answers; write ids and scores as CSV to standard output."""
     from app.cli.scoring import score_file
 
     with reported(ValueError, OSError):
-        scored = score_file(answers, instrument)
+        scored = score_file(answers, instrument, missing or ())
     sys.stdout.write(scored.text)
     for note in scored.notes:
         warn(note)

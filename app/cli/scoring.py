@@ -1,5 +1,6 @@
 """Score a table of answers, or offer an instrument for it, from the command line."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,12 +11,13 @@ from app.science.instruments.table import Scored, scored_csv
 from app.whole_files import write_whole
 
 
-def score_file(answers: Path, instrument_key: str) -> Scored:
+def score_file(answers: Path, instrument_key: str, missing: Collection[str] = ()) -> Scored:
     """Return the scored table, with notes on scores that have no value.
 
     Raises ValueError or OSError if the input is unusable.
 
-    The instrument is one of the product's, by its key, or a file of its own.
+    The instrument is one of the product's, by its key, or a file of its own; `missing` are codes
+    that stand for a missing answer.
     """
     folder = study_configs_dir() / "instruments"
     by_key = {path.stem: path for path in sorted(folder.glob("*.yaml"))}
@@ -26,7 +28,7 @@ def score_file(answers: Path, instrument_key: str) -> Scored:
             f" {', '.join(by_key)}"
         )
     loaded = load_instrument(file.read_text(encoding="utf-8"))
-    return scored_csv(loaded.instrument, _text_of(answers))
+    return scored_csv(loaded.instrument, _text_of(answers), missing)
 
 
 @dataclass(frozen=True)

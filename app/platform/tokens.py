@@ -14,12 +14,12 @@ import hashlib
 from datetime import datetime
 
 from sqlalchemy import bindparam, select
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, aliased
 from starlette.requests import HTTPConnection, Request
 from starlette.responses import Response
 
-from app.errors import NotSignedIn
-from app.models import Account, Device, LoginToken
+from app.errors import NotSignedIn, Withdrawn
+from app.models import Account, Device, Erasure, LoginToken, StudySession
 
 _BY_TOKEN = select(Device).where(Device.token_hash == bindparam("token_hash"))
 HOST_ONLY = "__Host-"
@@ -42,13 +42,32 @@ def account_of_token(db: Session, token: str, now: datetime) -> Account:
 
 
 def device_of_token(db: Session, token: str, kind: str) -> Device:
-    """Return the device with this token; raise NotSignedIn if it is unknown or was revoked."""
+    """Return the device with this token.
+
+    Raises Withdrawn if the data of its session were erased, so that the device deletes what it
+    still has of them; NotSignedIn if it is unknown or was revoked.
+    """
     device = db.scalar(_BY_TOKEN, {"token_hash": hash_token(token)})
+    if device is not None and device.revoked_at is not None and _is_erased(db, device):
+        raise Withdrawn(
+            "the data of this session were erased: nothing more of it is stored",
+            remedy="Discard what this device still has of it.",
+        )
     if device is None or device.kind != kind or device.revoked_at is not None:
         raise NotSignedIn(
             f"this {kind} is no longer paired", remedy="Enter a new code from the console."
         )
     return device
+
+
+def _is_erased(db: Session, device: Device) -> bool:
+    session, erasure = aliased(StudySession), aliased(Erasure)
+    query = (
+        select(erasure.id)
+        .join(session, session.participant_id == erasure.participant_id)
+        .where(session.id == device.session_id)
+    )
+    return db.scalar(query.limit(1)) is not None
 
 
 def cookie_name(request: HTTPConnection, name: str) -> str:

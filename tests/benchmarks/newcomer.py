@@ -74,7 +74,7 @@ def _first_figure(browser: Browser, folder: Path) -> Iterator[Figure]:
         figure.wait_for(timeout=PATIENCE_MS)
         took_s = time.monotonic() - began_s
         title = figure.get_by_role("heading").inner_text()
-        axes = " ".join(figure.locator(".xtitle, .ytitle").all_inner_texts())
+        axes = " ".join(figure.locator(".xtitle, .ytitle").all_text_contents())
         _draw(page, "newcomer-first-figure")
     part = "first_figure"
     yield Figure(part, "one click to the first figure", took_s, "s", "limit", FIGURE_WITHIN_S)

@@ -6,6 +6,7 @@ examined in both themes. `--only ROUTE` looks at one page, `--widths 390,1280` a
 `REEMBODY_SCREENSHOTS=FOLDER` every page is also drawn.
 """
 
+import itertools
 import os
 import sys
 import tempfile
@@ -14,10 +15,11 @@ from pathlib import Path
 
 from tests.benchmarks.every_page.lab import filled_lab
 from tests.benchmarks.every_page.routes import ROUTES, forgotten_paths
-from tests.benchmarks.every_page.visit import SHIFT_LIMIT, WIDTHS_PX, ZOOMS, Row, looks
+from tests.benchmarks.every_page.visit import SHIFT_LIMIT, WIDTHS_PX, ZOOMS, Row, opened_window
 from tests.benchmarks.report import Figure, Report
 from tests.support.browser import launched_browser
 
+READERS = tuple(dict.fromkeys(route.reader for route in ROUTES))
 PARTS = tuple(route.name for route in ROUTES)
 SCREENSHOTS_VARIABLE = "REEMBODY_SCREENSHOTS"
 
@@ -32,20 +34,18 @@ def measure(parts: frozenset[str], widths: Sequence[int] = WIDTHS_PX) -> Report:
         filled_lab(Path(scratch)) as lab,
         launched_browser() as browser,
     ):
-        for route in ROUTES:
-            if route.name not in parts:
+        for width_px, zoom, reader in itertools.product(widths, ZOOMS, READERS):
+            asked = [one for one in ROUTES if one.reader == reader and one.name in parts]
+            if not asked:
                 continue
-            of_route = [
-                row
-                for width_px in widths
-                for zoom in ZOOMS
-                for row in looks(
-                    browser, lab, route, width_px, zoom, Path(chosen) if chosen else None
-                )
-            ]
-            for row in of_route:
-                _tell(row)
-            rows += of_route
+            with opened_window(browser, lab, reader, width_px, zoom) as window:
+                for route in asked:
+                    for row in window.looks(route, Path(chosen) if chosen else None):
+                        _tell(row)
+                        rows.append(row)
+    for route in ROUTES:
+        of_route = [row for row in rows if row.route == route.name]
+        if of_route:
             report.add(*_figures(route.name, of_route))
     forgotten = forgotten_paths()
     report.add(Figure("console", "routes not looked at", len(forgotten), "", "at most", 0))
@@ -75,4 +75,6 @@ def _figures(route: str, rows: Sequence[Row]) -> tuple[Figure, ...]:
 def _tell(row: Row) -> None:
     if not row.sound:
         place = f"{row.route} {row.width} px {row.zoom} % {row.theme}"
-        print(f"{place}: " + "\n    ".join(row.found), file=sys.stderr)
+        figures = f"axe {row.axe}, overflow {row.overflow_px} px, shift {row.shift}"
+        found = "".join(f"\n    {one}" for one in row.found)
+        print(f"{place}: {figures}, errors {row.errors}{found}", file=sys.stderr, flush=True)

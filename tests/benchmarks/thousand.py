@@ -17,6 +17,7 @@ from app.database import Base, Database, open_database
 from app.features.care.opening import bring_up_to_date
 from app.features.design.studies import add_shipped, newest_version, protocol_of, study_by_key
 from app.features.movement.avatar import add_shipped_avatar
+from app.features.movement.humanoids import add_shipped_bodies
 from app.features.record.ledger import open_attempt, take_slot
 from app.models import (
     Answer,
@@ -53,13 +54,14 @@ OF_A_SUBMISSION = (Answer, ScoreValue)
 
 
 def shipped_database(data_dir: Path) -> Database:
-    """Open a new SQLite database in `data_dir`, with the shipped avatar and studies in it."""
+    """Open a new SQLite database in `data_dir` with the shipped bodies, avatar and studies."""
     settings = Settings(data_dir=data_dir)
     data_dir.mkdir(parents=True, exist_ok=True)
     bring_up_to_date(settings, Clock())
     database = open_database(settings.resolved_database_url)
     with database.writing() as db:
         now = Clock().utc_now()
+        add_shipped_bodies(db, now)
         add_shipped_avatar(db, now)
         add_shipped(db, now)
     return database

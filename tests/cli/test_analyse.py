@@ -493,8 +493,9 @@ def test_a_level_that_was_mistyped_once_is_named(tmp_path: Path) -> None:
     """One row of 1255 instead of 125 leaves nobody complete: the error names its line."""
     path = _written(tmp_path, _with_level(_lines(), "P2", "125", "1255"))
     told = _COMMAND.refusal(path, *_FACTOR)
-    assert "Only 0 of 5 subjects" in told
-    assert "latency '1255' is only in line 7 (P2)" in told
+    assert "latency '1255' is only in line 7 (P2)" in told.splitlines()[0]
+    assert "As it is, only 0 of 5 subjects" in told
+    assert "for example" not in told
     assert "was '125' meant" in told
     assert "correct the file" in told
 
@@ -510,6 +511,40 @@ def test_a_rare_level_is_noted_where_enough_people_are_complete(tmp_path: Path) 
     assert any("was 'high' meant" in note for note in notes)
     plain = _COMMAND.figures(_written(tmp_path, ["person,latency,score", *rows]), *_FACTOR)
     assert not any("meant" in note or "mistyped" in note for note in plain["warnings"])
+
+
+def test_a_rare_spelling_is_asked_about_once_with_its_line(tmp_path: Path) -> None:
+    """`Hand` in one row is one question, which names the line, and not a second on its spelling."""
+    rows = [f"P{who},{limb},{who % 3 + at}" for who in range(6)
+            for at, limb in enumerate(("hand", "foot"))]  # fmt: skip
+    path = _written(tmp_path, ["person,limb,score", *rows, "P3,Hand,2"])
+    options = ("--subject", "person", "--within", "limb", "--measure", "score")
+    told = _COMMAND.refusal(path, *options)
+    assert "limb 'Hand' is only in line 14 (P3)" in told
+    assert "was 'hand' meant" in told
+    assert "differ only in capitals" not in told
+
+
+def test_a_code_of_missing_values_is_named_and_can_be_declared(tmp_path: Path) -> None:
+    """-99 is used as a number and doubted; with --missing it is an empty cell."""
+    path = _written(tmp_path, [row.replace("P5,0,6", "P5,0,-99.0") for row in _lines()])
+    plain = _COMMAND.figures(path, *_FACTOR)
+    assert any("say so with --missing -99" in note for note in plain["warnings"])
+    declared = _COMMAND.figures(path, *_FACTOR, "--missing", "-99")
+    assert declared["n"] == plain["n"] - 1
+    emptied = _COMMAND.figures(
+        _written(tmp_path, [row.replace("P5,0,6", "P5,0,") for row in _lines()]), *_FACTOR
+    )
+    assert declared["means"] == emptied["means"]
+
+
+def test_a_contrast_has_one_interval_whatever_else_is_asked(tmp_path: Path) -> None:
+    """The bootstrap interval of 0 - 125 is the same with and without the rows of 350."""
+    path = _written(tmp_path, _lines())
+    whole = _COMMAND.figures(path, *_FACTOR)["pairwise"][0]
+    two = [row for row in _lines() if ",350," not in row]
+    alone = _COMMAND.figures(_written(tmp_path, two, "two.csv"), *_FACTOR)["pairwise"][0]
+    assert whole["mean_difference_ci"] == alone["mean_difference_ci"]
 
 
 def test_levels_spelt_almost_alike_are_asked_about(tmp_path: Path) -> None:

@@ -55,6 +55,8 @@ def test_the_text_marks_itself_and_states_assumptions() -> None:
     result = _COMMAND.run("power", _STUDY, "--participants", "6", "--sets", "20")
     assert result.stdout.startswith("SIMULATED: the power of the test that might be declared")
     assert "answering.effects.latency_350: -1.2 logits (assumed)" in result.stdout
+    assert "% of those who start are not in the test. As assumed, they stop, 0.01" in result.stdout
+    assert "straight-lined forms, 0.02 of all forms" in result.stdout
     assert "processor time" in result.stderr
     own = _COMMAND.run("power", "four-latencies-williams", "--participants", "6", "--sets", "20")
     assert own.stdout.startswith("SIMULATED: the power of the preregistered test")

@@ -131,6 +131,14 @@ def test_walks_given_twice_and_people_named_by_files_are_named(lab: Path) -> Non
     assert left["walk"].startswith("z-somebody-else.csv")
     assert "the same recording as walker-0-0.csv" in left["reason"]
 
+    # Whoever draws from the model, perhaps a year later, is told the same of its walks.
+    asked = ("sample", lab / "bare.npz", "--length", 2, "--count", 5)
+    assert any("names of their files" in note for note in _figures(*asked)["notes"])
+    told = _figures(*asked, "--stature", 1.9)["notes"]
+    assert "--stature 1.9 changes nothing" in told[0]
+    assert "note: the model was fitted without statures" in _run(*asked, "--stature", 1.9).stdout
+    assert not any("stature" in note for note in _figures(*asked)["notes"])
+
 
 def test_a_path_in_a_scene_leads_round_its_obstacles(lab: Path) -> None:
     """A path between places or points of a scene leads round its obstacles."""
@@ -171,6 +179,8 @@ def test_a_path_outside_what_the_model_has_seen_is_named(lab: Path) -> None:
     assert "length_m 10.00 is outside what the model has seen, " in text
     assert "this is a guess" in text
     assert "outside" not in _run(*asked, 2).stdout
+    rows = [line.split("  ")[1] for line in text.splitlines()[3:7]]
+    assert rows == ["duration, s", "velocity, m/s", "acceleration, m/s^2", "angular, 1/m"]
 
 
 def test_people_of_whom_nobody_walks_are_refused(lab: Path, tmp_path: Path) -> None:

@@ -1,13 +1,8 @@
-"""Interrupt a migration at any point, and read which schema is left.
+"""Interrupt a migration at any point, and read which schema is left."""
 
-Run as a program, it migrates the database at the given URL and kills itself on the way: `python -m
-tests.faults.interrupted URL REVISION AFTER_S`.
-"""
-
+import multiprocessing
 import os
 import signal
-import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,7 +16,7 @@ from sqlalchemy import Connection, Engine, String, column, event, inspect, selec
 
 from app.database import open_database
 from app.schema_revisions import alembic_config
-from tests.support.filled import VERSION_TABLE, contents, remembered, statements_of
+from tests.support.filled import VERSION_TABLE, contents_by, remembered, statements_of
 
 READING = {"SELECT", "PRAGMA", "SHOW", "SET", "BEGIN"}
 Step = tuple[str, str]
@@ -60,17 +55,15 @@ def found(url: str) -> Found:
     database = open_database(url)
     try:
         with database.engine.connect() as connection:
-            schema = _schema_of(connection)
+            statements = statements_of(connection)
+            schema = _remembered_words(statements, connection)
             version = select(column("version_num", String)).select_from(table(VERSION_TABLE))
             revision = connection.scalar(version) if VERSION_TABLE in schema else None
+            rows = contents_by(statements, connection)
         words = {name: told for name, told in schema.items() if name != VERSION_TABLE}
-        return Found(revision, words, contents(database.engine))
+        return Found(revision, words, rows)
     finally:
         database.close()
-
-
-def _schema_of(connection: Connection) -> dict[str, Any]:
-    return _remembered_words(statements_of(connection), connection)
 
 
 def _in_words(connection: Connection) -> dict[str, Any]:
@@ -120,8 +113,11 @@ def counted() -> Iterator[list[str]]:
 
 
 @contextmanager
-def stopped_after(changes: int) -> Iterator[None]:
-    """Raise `Interrupted` after the statement with this number, or instead of the commit."""
+def stopped_after(changes: int) -> Iterator[list[str]]:
+    """Raise `Interrupted` after the statement with this number, or instead of the commit.
+
+    Yields the statements executed so far, as `counted` does.
+    """
     with counted() as seen:
 
         def stop(*_: Any) -> None:
@@ -131,7 +127,7 @@ def stopped_after(changes: int) -> Iterator[None]:
         for moment in ("after_cursor_execute", "commit"):
             event.listen(Engine, moment, stop)
         try:
-            yield
+            yield seen
         finally:
             for moment in ("after_cursor_execute", "commit"):
                 event.remove(Engine, moment, stop)
@@ -139,19 +135,18 @@ def stopped_after(changes: int) -> Iterator[None]:
 
 def killed_after(url: str, revision: str, after_s: float) -> bool:
     """Migrate in a process killed `after_s` after its first statement; return if it was killed."""
-    arguments = [sys.executable, "-m", "tests.faults.interrupted", url, revision, str(after_s)]
-    ended = subprocess.run(arguments, check=False, capture_output=True, text=True)
-    assert ended.returncode in (0, -signal.SIGKILL), ended.stderr
-    return ended.returncode != 0
+    process = multiprocessing.get_context("spawn").Process(
+        target=_upgrade_and_die, args=(url, revision, after_s)
+    )
+    process.start()
+    process.join()
+    assert process.exitcode in (0, -signal.SIGKILL), process.exitcode
+    return process.exitcode != 0
 
 
-def _main(url: str, revision: str, after_s: str) -> None:
-    kill = threading.Timer(float(after_s), os.kill, (os.getpid(), signal.SIGKILL))
+def _upgrade_and_die(url: str, revision: str, after_s: float) -> None:
+    kill = threading.Timer(after_s, os.kill, (os.getpid(), signal.SIGKILL))
     kill.daemon = True
     # The time counts from the first statement, so loading the modules is not included.
     event.listen(Engine, "before_cursor_execute", lambda *_: kill.start(), once=True)
-    command.upgrade(alembic_config(url), revision)
-
-
-if __name__ == "__main__":
-    _main(*sys.argv[1:])
+    upgrade(url, revision)

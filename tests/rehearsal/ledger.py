@@ -33,6 +33,8 @@ class LedgerJournal(Journal):
     sent: dict[Key, list[str]] = field(default_factory=dict)
     acked: dict[Key, int] = field(default_factory=dict)
     active_s: dict[Key, list[tuple[int, int, float]]] = field(default_factory=dict)
+    acknowledgements: int = 0
+    """How often the server said what it has stored."""
 
     def add(self, entry: Entry) -> None:
         """Add a message, whose sequence numbers must follow the previous ones."""
@@ -57,6 +59,7 @@ class LedgerJournal(Journal):
     def acknowledge(self, positions: "Sequence[tuple[str, int, int]]") -> None:  # type: ignore[override]  # a wider argument
         """Record the positions that the server acknowledged."""
         known = list(positions)
+        self.acknowledgements += 1
         for stream, epoch, next_seq in known:
             self.acked[stream, epoch] = max(next_seq, self.acked.get((stream, epoch), 0))
         super().acknowledge(known)

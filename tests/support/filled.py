@@ -52,10 +52,16 @@ def statements_of(connection: Connection) -> tuple[str, ...]:
 
 
 _ON_SQLITE = text("SELECT type || ' ' || name || ' ' || sql FROM sqlite_master WHERE sql > ''")
-# Each column with all its standard attributes; the catalogue is the database's own name.
+# The standard's own view of columns asks about rights, and takes six times as long.
 _ON_POSTGRES = text("""
-    SELECT 'column ' || (jsonb_strip_nulls(to_jsonb(c)) - 'table_catalog' - 'udt_catalog')::text
-    FROM information_schema.columns AS c WHERE table_schema = 'public'
+    SELECT concat_ws(' ', 'column', a.attrelid::regclass, a.attnum, a.attname,
+        format_type(a.atttypid, a.atttypmod), CASE WHEN a.attnotnull THEN 'NOT NULL' END,
+        'DEFAULT ' || pg_get_expr(d.adbin, d.adrelid), concat('identity ', a.attidentity),
+        concat('generated ', a.attgenerated), concat('collation ', a.attcollation))
+    FROM pg_attribute AS a JOIN pg_class AS c ON c.oid = a.attrelid
+    LEFT JOIN pg_attrdef AS d ON d.adrelid = a.attrelid AND d.adnum = a.attnum
+    WHERE c.relnamespace = 'public'::regnamespace AND c.relkind = 'r'
+    AND a.attnum > 0 AND NOT a.attisdropped
     UNION ALL
     SELECT concat_ws(' ', 'constraint', conrelid::regclass, conname, pg_get_constraintdef(oid))
     FROM pg_constraint WHERE connamespace = 'public'::regnamespace
@@ -102,15 +108,20 @@ def fill(engine: Engine, rows: int = ROWS) -> None:
 def contents(engine: Engine) -> dict[str, list[dict[str, Any]]]:
     """Return all rows of all tables, sorted by primary key."""
     with engine.connect() as connection:
-        return {
-            table.name: [
-                dict(row)
-                for row in connection.execute(
-                    table.select().order_by(*table.primary_key.columns)
-                ).mappings()
-            ]
-            for table in tables_of(connection)
-        }
+        return contents_by(statements_of(connection), connection)
+
+
+def contents_by(schema: tuple[str, ...], connection: Connection) -> dict[str, list[dict[str, Any]]]:
+    """Return `contents` of a database whose schema these statements define."""
+    return {
+        table.name: [
+            dict(row)
+            for row in connection.execute(
+                table.select().order_by(*table.primary_key.columns)
+            ).mappings()
+        ]
+        for table in _tables_in(schema, connection)
+    }
 
 
 def _listed(connection: Connection) -> dict[str, dict[str, list[str]]]:

@@ -30,11 +30,8 @@ OURS = ("app", "migrations", "tests", "build_pages.py", "hatch_build.py", "set_u
 # All tests in there are browser tests, and no others are.
 BROWSER_TESTS = "tests/e2e"
 ARCHITECTURE_TESTS = "tests/architecture"
-# These build pages and packages in the repository: they run alone, so that no test reads half a
-# build.
-BUILDING_TESTS = tuple(
-    f"{ARCHITECTURE_TESTS}/{name}.py" for name in ("test_packages", "test_pages_build", "test_run")
-)
+# It packs the whole repository with the pages that the set-up has built.
+PACKAGE_TESTS = f"{ARCHITECTURE_TESTS}/test_packages.py"
 LINT_IMPORTS = "from importlinter.cli import lint_imports_command; lint_imports_command()"
 DESCRIPTION = """\
 Without arguments everything is checked: types, lint, format, import contracts, pages, tests on
@@ -104,14 +101,17 @@ def stages(*, long: bool) -> list[Stage]:
     """Return all stages, cheap checks first."""
     also_long = ["--long"] if long else []
     spread = ["-n", str(CORES), "--dist", "worksteal"]
-    ignored = [f"--ignore={path}" for path in (BROWSER_TESTS, *BUILDING_TESTS)]
+    ignored = [f"--ignore={path}" for path in (BROWSER_TESTS, PACKAGE_TESTS)]
+    mypy, *quicker = static_stages()
     return [
-        *static_stages(),
+        mypy,
+        # Beside it, and over before any test of a server starts: nothing has to wait for it.
+        pytest_stage("packages", PACKAGE_TESTS, *also_long),
+        *quicker,
         *frontend_stages(),
         # In parallel: tests wait for servers, pages and clocks, and waiting needs no core.
         pytest_stage("tests", *spread, "-m", "not browser", *ignored, *also_long, aloud=True),
         pytest_stage("browser tests", BROWSER_TESTS, *also_long),
-        pytest_stage("builds", *BUILDING_TESTS, *also_long, alone=True, aloud=True),
     ]
 
 

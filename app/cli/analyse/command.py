@@ -36,6 +36,10 @@ def analyse(
             help="Column of words, such as a limb, to average over within each cell; repeatable."
         ),
     ] = None,
+    missing: Annotated[
+        list[str] | None,
+        typer.Option(help="A value that stands for a missing one, as -99; repeatable."),
+    ] = None,
     art: Annotated[
         bool, typer.Option("--art", help="Also the aligned rank transform, which is contested.")
     ] = False,
@@ -58,6 +62,7 @@ def analyse(
         where=tuple(where or ()),
         declared_orders=tuple(order or ()),
         averaged=tuple(average or ()),
+        missing=tuple(missing or ()),
     )
     with reported(ValueError, OSError):
         done = carry_out(asked)

@@ -4,7 +4,7 @@ Nothing is corrected, since only the person who wrote the table knows: each doub
 the line, what was done, and what to do.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from difflib import get_close_matches
 from statistics import median
 
@@ -46,22 +46,26 @@ def mistyped_levels(factor: str, read: TidyInput) -> list[str]:
     """For each level, the subjects who have it, and the line where each first has."""
     for subject, text, line in zip(read.subjects, column, read.lines, strict=True):
         having[places[text]].setdefault(subject, line)
-    return _rare(factor, levels, having) + _spelt_alike(factor, levels)
+    rare = _rare(factor, levels, having)
+    # A rare level is asked about with its line, and not once more for its spelling.
+    return list(rare.values()) + _spelt_alike(factor, levels, already=set(rare))
 
 
-def _rare(factor: str, levels: Sequence[str], having: Sequence[dict[str, int]]) -> list[str]:
+def _rare(factor: str, levels: Sequence[str], having: Sequence[dict[str, int]]) -> dict[str, str]:
+    """Return a question about each level that hardly anybody has, by level."""
     people = len({subject for own in having for subject in own})
     usual = median(len(own) for own in having)
     if people < _FEWEST_SUBJECTS or usual < _USUAL * people:
-        return []
-    found = []
+        return {}
+    found = {}
     for level, own in zip(levels, having, strict=True):
         if len(own) > max(1.0, _RARE * people):
             continue
         lines = ", ".join(f"{line} ({who})" for who, line in list(own.items())[:_SHOWN])
         others = [one for one in levels if one != level]
-        close = get_close_matches(level, others, n=1)
-        found.append(
+        alike = [one for one in others if plainly(one) == plainly(level)]
+        close = alike or get_close_matches(level, others, n=1)
+        found[level] = (
             f"{factor} {level!r} is only in line {lines}, the others ({', '.join(others)}) are of"
             f" most subjects: {f'was {close[0]!r} meant' if close else 'was it mistyped'}? It was"
             " taken as a level of its own; if it is not one, correct the file"
@@ -69,7 +73,7 @@ def _rare(factor: str, levels: Sequence[str], having: Sequence[dict[str, int]]) 
     return found
 
 
-def _spelt_alike(factor: str, levels: Sequence[str]) -> list[str]:
+def _spelt_alike(factor: str, levels: Sequence[str], already: Collection[str] = ()) -> list[str]:
     spelt: dict[str, list[str]] = {}
     for level in levels:
         spelt.setdefault(plainly(level), []).append(level)
@@ -77,7 +81,9 @@ def _spelt_alike(factor: str, levels: Sequence[str]) -> list[str]:
         f"{factor} {' and '.join(map(repr, names))} differ only in capitals, spaces or dashes: one"
         f" level? They were analysed as {len(names)}; if they are one, spell them alike"
         for names in spelt.values()
-        if len(names) > 1 and any(as_number(name) is None for name in names)
+        if len(names) > 1
+        and any(as_number(name) is None for name in names)
+        and not set(already).intersection(names)
     ]
 
 
@@ -134,7 +140,7 @@ def missing_codes(measure: str, read: TidyInput) -> list[str]:
         more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
         found.append(
             f"{measure} is {code:g} in line {shown}{more}, far from all other values ({low:g} to"
-            f" {high:g}); it was used as a number. If it stands for a missing value, leave the"
-            " cell empty"
+            f" {high:g}); it was used as a number. If it stands for a missing value, say so with"
+            f" --missing {code:g}"
         )
     return found

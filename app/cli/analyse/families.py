@@ -80,7 +80,7 @@ def families_of(
     cells: Cells,
     reference: str | None,
     ordered: frozenset[str],
-    rng: np.random.Generator,
+    seed: int,
     warnings: list[str],
 ) -> list[Family]:
     """Test each factor averaged over the other, then the first at each level of the second.
@@ -103,13 +103,13 @@ def families_of(
                 f" one with --order '{factor}={','.join(levels)}'"
             )
         values = cells.of_factor(axis)
-        found.append(_family_of(question, values, against, rng, warnings, ordered=has_trend))
+        found.append(_family_of(question, values, against, seed, warnings, ordered=has_trend))
     if len(names) == _MOST_FACTORS:
         for place, level in enumerate(cells.levels[1]):
             question = Question(names[0], cells.levels[0], at={names[1]: level})
             values = cells.values[:, :, place]
             has_trend = names[0] in ordered
-            found.append(_family_of(question, values, reference, rng, warnings, ordered=has_trend))
+            found.append(_family_of(question, values, reference, seed, warnings, ordered=has_trend))
     return found
 
 
@@ -117,7 +117,7 @@ def _family_of(
     question: Question,
     values: FloatArray,
     reference: str | None,
-    rng: np.random.Generator,
+    seed: int,
     warnings: list[str],
     *,
     ordered: bool,
@@ -145,7 +145,7 @@ def _family_of(
         friedman=ranked,
         page=tried(lambda: page_trend(whole), warnings, where) if has_trend else None,
         pairs=pairs,
-        intervals=tuple(mean_interval(complete_rows(a - b)[0], rng) for a, b in columns)
+        intervals=tuple(mean_interval(complete_rows(a - b)[0], seed) for a, b in columns)
         if pairs
         else (),
         planned=tried(lambda: against_reference(values, levels, reference), warnings, where)
@@ -194,6 +194,12 @@ def tried(compute: Callable[[], T], warnings: list[str], where: str = "") -> T |
         return None
 
 
-def mean_interval(values: FloatArray, rng: np.random.Generator) -> Interval | None:
-    """Return the bootstrap interval of the mean; None for fewer than two values."""
-    return bootstrap_interval(values, mean_of, rng=rng) if values.size > 1 else None
+def mean_interval(values: FloatArray, seed: int) -> Interval | None:
+    """Return the bootstrap interval of the mean; None for fewer than two values.
+
+    Every interval is drawn from the seed anew: the same values have the same interval in every
+    table, whatever else was asked for.
+    """
+    if values.size < _TWO:
+        return None
+    return bootstrap_interval(values, mean_of, rng=np.random.default_rng(seed))

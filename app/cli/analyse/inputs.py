@@ -75,10 +75,12 @@ def read_tidy(
     measure: str,
     where: Sequence[str] = (),
     averaged: Sequence[str] = (),
+    missing: Sequence[str] = (),
 ) -> TidyInput:
     """Read the named columns of the rows that fulfil every condition `COLUMN=VALUE`.
 
-    `averaged` names columns whose words tell the rows of a cell apart and may be averaged over.
+    `averaged` names columns whose words tell the rows of a cell apart and may be averaged over;
+    `missing` are values of the measure that stand for a missing one, which are read as empty.
 
     Raises OSError if the file cannot be read, UnusableTable if it is not a table, lacks a column,
     has a duplicate row although all other cells have one row, has several measures in one cell, or
@@ -124,7 +126,7 @@ def read_tidy(
     return TidyInput(
         subjects=columns[subject],
         within={name: columns[name] for name in within},
-        measure=columns[measure],
+        measure=["" if stands_for_missing(text, missing) else text for text in columns[measure]],
         lines=[row.line for row in rows],
         replicates=_repeated(rows, keys),
         left_out={reason: count for reason, count in left_out.items() if count},
@@ -258,6 +260,12 @@ def _spelt_otherwise(
         if row.line not in taken and plainly(row.cells[place]) == plainly(wanted):
             lines.setdefault(row.cells[place], []).append(row.line)
     return [(condition, value, tuple(own)) for value, own in lines.items()]
+
+
+def stands_for_missing(text: str, codes: Sequence[str]) -> bool:
+    """Return whether a cell is one of these codes; numbers are compared as numbers."""
+    number = as_number(text)
+    return any(text == code or (number is not None and as_number(code) == number) for code in codes)
 
 
 def plainly(word: str) -> str:

@@ -100,13 +100,13 @@ def _family(family: Family) -> Iterator[str]:
 def _pairs(family: Family) -> Iterator[str]:
     width = max(_WIDTH - 2, 2 + max(len(f"{one.a} - {one.b}") for one in family.pairs))
     yield (
-        f"  {'Wilcoxon':<{width}}{'n':>4}{'W':>8}{'p':>9}{'p Holm':>9}{'r':>8}"
+        f"  {'Wilcoxon':<{width}}{'n':>4}{'zero':>6}{'W':>8}{'p':>9}{'p Holm':>9}{'r':>8}"
         f"{'mean diff':>12}{'CI':>24}"
     )
     for one, interval in zip(family.pairs, family.intervals, strict=True):
         mean = _NONE if interval is None else _figure(interval.estimate)
         yield (
-            f"  {f'{one.a} - {one.b}':<{width}}{one.test.n:>4}{_tested(one)}"
+            f"  {f'{one.a} - {one.b}':<{width}}{one.test.n:>4}{one.test.n_zero:>6}{_tested(one)}"
             f"{mean:>12}{_ends(interval):>24}"
         )
 

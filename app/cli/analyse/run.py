@@ -52,6 +52,8 @@ class AnalyseOrder:
     """FACTOR=LEVEL,LEVEL,...: the declared order of a factor's levels."""
     averaged: tuple[str, ...] = ()
     """Columns of words that tell the rows of a cell apart, and may be averaged over."""
+    missing: tuple[str, ...] = ()
+    """Values of the measure that stand for a missing one."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +101,13 @@ def carry_out(order: AnalyseOrder) -> Analysis:
         )
     orders = _orders(order)
     read = read_tidy(
-        order.table, order.subject, order.within, order.measure, order.where, order.averaged
+        order.table,
+        order.subject,
+        order.within,
+        order.measure,
+        order.where,
+        order.averaged,
+        order.missing,
     )
     cells = cells_of(
         read.subjects,
@@ -129,13 +137,12 @@ def carry_out(order: AnalyseOrder) -> Analysis:
         for factor, levels in zip(cells.factors, cells.levels, strict=True)
         if factor in orders or has_order(levels)
     )
-    rng = np.random.default_rng(order.seed)
     return Analysis(
         order=order,
         cells=cells,
         complete=complete,
-        means=tuple(_means(cells, rng)),
-        families=tuple(families_of(cells, order.reference, ordered, rng, warnings)),
+        means=tuple(_means(cells, order.seed)),
+        families=tuple(families_of(cells, order.reference, ordered, order.seed, warnings)),
         rm_anova=tried(lambda: rm_anova(complete.values, cells.factors), warnings),
         aligned=tried(lambda: aligned_ranks_within(complete.values, cells.factors), warnings)
         if order.art
@@ -181,11 +188,15 @@ def _check_usable(
 ) -> None:
     if len(complete.subjects) < 2:
         lacking = complete.left_out[0]
+        few = (
+            f"only {len(complete.subjects)} of {len(cells.subjects)} subjects have a value of"
+            f" {order.measure!r} in every cell; two at least are needed."
+        )
+        if mistyped:
+            raise TooFewData("".join(f"{text}. " for text in mistyped) + f"As it is, {few}")
         raise TooFewData(
-            f"Only {len(complete.subjects)} of {len(cells.subjects)} subjects have a value of"
-            f" {order.measure!r} in every cell; two at least are needed. {order.subject}"
-            f" {lacking!r}, for example, lacks {missing_cells(cells, lacking)}."
-            + "".join(f" {text}." for text in mistyped)
+            f"O{few[1:]} {order.subject} {lacking!r}, for example, lacks"
+            f" {missing_cells(cells, lacking)}."
         )
     if float(np.ptp(complete.values)) <= 0.0:
         raise ConstantData(
@@ -213,7 +224,7 @@ def _warnings(cells: Cells, complete: Complete, read: TidyInput) -> list[str]:
     return warnings
 
 
-def _means(cells: Cells, rng: np.random.Generator) -> list[CellMean]:
+def _means(cells: Cells, seed: int) -> list[CellMean]:
     found = []
     for where in np.ndindex(*cells.values.shape[1:]):
         levels = {
@@ -228,7 +239,7 @@ def _means(cells: Cells, rng: np.random.Generator) -> list[CellMean]:
                 mean=float(column.mean()) if column.size else float("nan"),
                 sd=float(column.std(ddof=1)) if column.size > 1 else float("nan"),
                 median=float(np.median(column)) if column.size else float("nan"),
-                interval=mean_interval(column, rng),
+                interval=mean_interval(column, seed),
             )
         )
     return found

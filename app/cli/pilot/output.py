@@ -50,6 +50,8 @@ def _lines(curve: Curve) -> Iterator[str]:
         yield f"With none of these numbers does the lower bound reach {target:g}; {planned}."
     else:
         yield f"{smallest} is the smallest n whose lower bound reaches {target:g}; {planned}."
+    if lost := _lost(curve):
+        yield lost
     difference = header["assumed_difference"]
     yield f"Assumed difference, longest against shortest latency: {difference:.3g} of {measure}."
     yield ""
@@ -58,6 +60,26 @@ def _lines(curve: Curve) -> Iterator[str]:
         value = one["value"]
         shown = ", ".join(f"{x:g}" for x in value) if isinstance(value, list) else f"{value:g}"
         yield f"  {one['name']}: {shown} {one['unit']} ({one['source']})"
+
+
+def _lost(curve: Curve) -> str | None:
+    """Say who of those who start is not in the test, and which assumptions say so."""
+    started = sum(point.n for point in curve.points)
+    left = sum(point.mean_in_test for point in curve.points)
+    if not started or left >= started:
+        return None
+    words = {
+        "dropout": "stop, {} in each block",
+        "excluded": "are excluded for a technical reason, {}",
+        "answering.straight_lining": "hand in straight-lined forms, {} of all forms, of which the"
+        " declared exclusions allow few or none",
+    }
+    stated = {one["name"]: one["value"] for one in curve.header["assumptions"]}
+    reasons = [text.format(f"{stated[name]:g}") for name, text in words.items() if stated.get(name)]
+    return (
+        f"{100.0 * (1.0 - left / started):.0f} % of those who start are not in the test. As"
+        f" assumed, they {'; or '.join(reasons)}."
+    )
 
 
 def _row(point: PowerPoint) -> str:

@@ -57,7 +57,7 @@ def as_text(done: Done) -> str:
     lines = [
         title,
         *(f"  {name:<20}{value}" for name, value in rows),
-        *(f"  note: {note}" for note in notes),
+        *(f"  noted: {note}" for note in notes),
         *(f"  {one.action}: {one.sentence}" for one in done.notices if one.sentence not in notes),
         "",
         *_figures(done),

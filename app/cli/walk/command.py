@@ -1,13 +1,13 @@
 """Define `walk fit`, `walk sample` and `walk evaluate`: parse options, run, print the results."""
 
 import json
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from app.cli.errors import reported
+from app.cli.progress import Activity
 
 walk = typer.Typer(help="Learn how people walk, and predict how others will.", no_args_is_help=True)
 _Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
@@ -52,8 +52,8 @@ def fit(
 
     recorded = WalksOrder(tuple(walks), scene, people, rate_hz, unit)
     order = FitOrder(recorded, out, seed, k, entries, reading)
-    with reported(ValueError, OSError):
-        done = carry_out_fit(order, _show_progress if sys.stderr.isatty() else None)
+    with reported(ValueError, OSError), Activity("reading the walks") as activity:
+        done = carry_out_fit(order, activity.now)
     print(json.dumps(texts.fit_json(done)) if as_json else texts.fit_text(done))
 
 
@@ -112,8 +112,3 @@ def evaluate(
     with reported(ValueError, OSError):
         done = carry_out_evaluation(model, order, draws=draws, seed=seed, even_fitted=even_fitted)
     print(json.dumps(texts.evaluation_json(done)) if as_json else texts.evaluation_text(done))
-
-
-def _show_progress(done: int, total: int) -> None:
-    sys.stderr.write(f"\rmaps: {done} of {total}" + ("\n" if done == total else ""))
-    sys.stderr.flush()

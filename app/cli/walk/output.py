@@ -83,17 +83,7 @@ def fit_text(done: Fitted) -> str:
         )
     lines += _left_out_lines(done.walks.left_out)
     lines += [f"  {'notice':<14}{text}" for text in done.walks.notices]
-    if done.cut:
-        lines.append(
-            f"  {'note':<14}{done.cut} walk(s) begin or end with the recording, amid walking; they"
-            " say little about how people start and stop"
-        )
-    if len(done.walks.named_by_file) > 1:
-        lines.append(
-            f"  {'note':<14}{len(done.walks.named_by_file)} people are only known by the names of"
-            " their files: if one person walks in several, say so with --people, or predictions"
-            " are too certain"
-        )
+    lines += [f"  {'note':<14}{text}" for text in fit.caveats]
     lines.append(f"  {'space':<14}{len(fit.space.z)} entries, {fit.space.k} neighbours")
     lines.append(f"  {'reading':<14}{reading_text(fit.reading)}")
     lines += [
@@ -148,12 +138,13 @@ def sample_json(done: Sampled) -> dict[str, object]:
         "durations_s": prediction.durations_s.tolist(),
         "not_arrived": prediction.lost,
         "outside": done.fit.outside(done.dependencies),
+        "notes": list(done.notes),
     }
 
 
 def sample_text(done: Sampled) -> str:
     """Format the draws of `walk sample` for people."""
-    found, names = done.prediction, _parameters(done.fit)
+    found, parameters = done.prediction, done.fit.database.grid.parameters
     count = len(found.durations_s)
     lines = [
         (
@@ -161,20 +152,17 @@ def sample_text(done: Sampled) -> str:
             f" {done.which}, {count} walk(s), {found.lost} drawn that did not arrive"
         ),
         "",
-        f"  {'':<14}{'5 %':>8}{'25 %':>8}{'median':>8}{'75 %':>8}{'95 %':>8}",
+        f"  {'':<20}{'5 %':>8}{'25 %':>8}{'median':>8}{'75 %':>8}{'95 %':>8}",
     ]
     columns = [("duration, s", found.durations_s)]
-    columns += [(name, found.vectors[:, at]) for at, name in enumerate(names)]
+    columns += [
+        (f"{one.name}, {one.unit}" if one.unit else one.name, found.vectors[:, at])
+        for at, one in enumerate(parameters)
+    ]
     for name, column in columns:
         cells = "".join(f"{value:>8.2f}" for value in np.percentile(column, PERCENTILES))
-        lines.append(f"  {name:<14}{cells}")
-    base = done.fit.database
-    for name in done.fit.outside(done.dependencies):
-        seen = base.vectors[:, base.names.index(name)]
-        lines.append(
-            f"  note: {name} {done.dependencies[name]:.2f} is outside what the model has seen,"
-            f" {seen.min():.2f} to {seen.max():.2f}: this is a guess"
-        )
+        lines.append(f"  {name:<20}{cells}")
+    lines += [f"  note: {text}" for text in done.notes]
     return "\n".join(lines)
 
 

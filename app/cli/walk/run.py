@@ -1,7 +1,7 @@
 """Run `reembody walk`: fit a model, draw walks from it, compare it with recorded walks."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -128,6 +128,25 @@ class Sampled:
     dependencies: dict[str, float]
     prediction: Prediction
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be known before these draws are believed."""
+        unused = (
+            f"the model was fitted without statures, so --stature {self.order.stature_m:g} changes"
+            " nothing; fit it again with --people to learn from them"
+            if self.order.stature_m is not None and STATURE not in self.fit.database.names
+            else None
+        )
+        base = self.fit.database
+        guessed = []
+        for name in self.fit.outside(self.dependencies):
+            seen = base.vectors[:, base.names.index(name)]
+            guessed.append(
+                f"{name} {self.dependencies[name]:.2f} is outside what the model has seen,"
+                f" {seen.min():.2f} to {seen.max():.2f}: this is a guess"
+            )
+        return (*([unused] if unused else []), *guessed, *self.fit.caveats)
+
 
 @dataclass(frozen=True, eq=False)
 class Evaluated:
@@ -144,8 +163,11 @@ class Evaluated:
     left_out: tuple[tuple[str, str], ...]
 
 
-def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None = None) -> Fitted:
-    """Fit a model and write it; raise ValueError or OSError, with nothing written."""
+def carry_out_fit(order: FitOrder, now: Callable[[str], None] = lambda _step: None) -> Fitted:
+    """Fit a model and write it; raise ValueError or OSError, with nothing written.
+
+    `now` is told what is being done, in words.
+    """
     if order.reading not in READINGS:
         raise ValueError(f"--reading {order.reading!r}: {', '.join(READINGS)} are valid")
     require_folder_of(order.out)
@@ -158,13 +180,21 @@ def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None =
         _one_person(entries[0].walk, len(entries))
     follower = SteeringFollower()
     maker = MapMaker(follower=follower)
-    maps = [one for _, one in maps_of(entries, maker, progress=progress)]
+    now(f"making the maps of {len(entries)} walks")
+    maps = [
+        one
+        for _, one in maps_of(
+            entries, maker, progress=lambda done, total: now(f"maps: {done} of {total}")
+        )
+    ]
     database = database_of(entries, maps, names)
     check_persons(database)
     options = FitOptions(order.seed, order.k, order.entries, READINGS[order.reading])
-    fit = fitted(database, options)
-    digest = write_model(order.out, fit, follower.rules)
+    now("comparing readings of the maps" if READINGS[order.reading] is None else "fitting")
     cut = sum(not (one.walk.begins_still and one.walk.ends_still) for one in entries)
+    fit = replace(fitted(database, options), caveats=_caveats(read, cut))
+    now("learning how people differ, and writing the model")
+    digest = write_model(order.out, fit, follower.rules)
     return Fitted(order, fit, digest, read, left_out, cut)
 
 
@@ -219,6 +249,22 @@ def _course(entry: PlannedWalk) -> str:
 def _read(order: WalksOrder) -> Entries:
     tables = tables_of(order.rate_hz, order.unit)
     return read_entries(order.files, read_people(order.people), read_scene(order.scene), tables)
+
+
+def _caveats(read: Entries, cut: int) -> tuple[str, ...]:
+    """Return what is to be known of the walks wherever the model is used."""
+    found = []
+    if cut:
+        found.append(
+            f"{cut} walk(s) begin or end with the recording, amid walking; they say little about"
+            " how people start and stop"
+        )
+    if len(read.named_by_file) > 1:
+        found.append(
+            f"{len(read.named_by_file)} people are only known by the names of their files: if one"
+            " person walks in several, say so with --people, or predictions are too certain"
+        )
+    return tuple(found)
 
 
 def _names(entries: list[PlannedWalk]) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -10,7 +10,7 @@ does not have to load.
 import csv
 import io
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,7 +41,10 @@ class _Row:
 
 @dataclass(frozen=True)
 class Scored:
-    """A scored table as CSV, and sentences on scores that have no value: how many, where, why."""
+    """A scored table as CSV, with sentences on what is to be looked at.
+
+    They name scores without a value (how many, where, why), and rows that occur twice.
+    """
 
     text: str
     notes: tuple[str, ...]
@@ -52,22 +55,68 @@ def score_csv(instrument: Instrument, text_in: str) -> str:
     return scored_csv(instrument, text_in).text
 
 
-def scored_csv(instrument: Instrument, text_in: str) -> Scored:
+def scored_csv(instrument: Instrument, text_in: str, missing: Collection[str] = ()) -> Scored:
     r"""Score a CSV of raw answers: id columns unchanged, then one column for each score.
 
     `text_in`: a header line, then one row for each completed form; columns named like items contain
-    answers, empty (or NA) where missing. The result uses commas and \n; scores have every digit of
-    a float and are empty where they have no value. A table with only a header gives only a header.
+    answers, empty (or NA, or one of the codes in `missing`) where missing. The result uses commas
+    and \n; scores have every digit of a float and are empty where they have no value. A table with
+    only a header gives only a header.
 
     Raises InstrumentTableError, naming line and column, for: no header, no item column, duplicate
     columns, broken quotes; for all rows of another length and all invalid answers together.
     """
     separator, header, rows = _read(instrument, text_in.removeprefix("\ufeff"))
+    rows = _without_codes(instrument, header, rows, missing)
     _check_rows(instrument, separator, header, rows)
     cells = [_read_cells(instrument, separator, header, row) for row in rows]
     table = score_table(instrument, pd.DataFrame(cells, columns=header, dtype=object))
     notes = _notes_on_empty_scores(instrument, header, rows, table)
+    if len(_item_columns(instrument, header)) < len(header):
+        notes += _notes_on_repeated_rows(rows)
     return Scored(_to_csv(table, [score.key for score in instrument.scores]), notes)
+
+
+def _without_codes(
+    instrument: Instrument, header: list[str], rows: list[_Row], missing: Collection[str]
+) -> list[_Row]:
+    """Return the rows with empty cells for the codes of missing answers; ids are left alone."""
+    codes = {_cell(code) for code in missing} - {None}
+    if not codes:
+        return rows
+    items = {
+        at for at, name in enumerate(header) if _item_name(instrument, name) in instrument.by_key
+    }
+    return [
+        _Row(
+            row.line,
+            [
+                "" if at in items and _cell(cell) in codes else cell
+                for at, cell in enumerate(row.cells)
+            ],
+        )
+        for row in rows
+    ]
+
+
+def _notes_on_repeated_rows(rows: list[_Row]) -> tuple[str, ...]:
+    """Return a sentence if rows are the same in every cell, as when a form was copied twice.
+
+    Rows without anything that names the person may be the same by chance.
+    """
+    lines: dict[tuple[str, ...], list[int]] = {}
+    for row in rows:
+        lines.setdefault(tuple(cell.strip() for cell in row.cells), []).append(row.line)
+    repeated = [own for own in lines.values() if len(own) > 1]
+    if not repeated:
+        return ()
+    shown = "; ".join(" and ".join(map(str, own)) for own in repeated[:_NAMED_ROWS])
+    more = f"; and {len(repeated) - _NAMED_ROWS} more" if len(repeated) > _NAMED_ROWS else ""
+    note = (
+        f"lines {shown}{more} are the same in every cell: was a form copied twice? Each was scored;"
+        " if they are one form, remove all but one"
+    )
+    return (note,)
 
 
 def _notes_on_empty_scores(
@@ -175,8 +224,8 @@ def _check_rows(
             except AnswerError as error:
                 wrong.append(
                     f"Row {number} (line {row.line}), column {header[at].strip()}: the answer is "
-                    f"{shortened(row.cells[at])!r}. Valid: {error.valid}, or an empty cell if it "
-                    "is missing."
+                    f"{shortened(row.cells[at])!r}. Valid: {error.valid}, or an empty cell (or NA) "
+                    "if it is missing."
                 )
     if not wrong:
         return

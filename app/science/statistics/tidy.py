@@ -228,7 +228,8 @@ def _number(value: str | float, column: str, line: int) -> float:
         if number is None:
             raise UnusableTable(
                 f"Line {line}, column {column!r}: {value!r} is not a finite number. Write numbers"
-                " with a point, and leave the cell empty (or NA) where a value is missing."
+                " with a point (in a table with semicolons, a comma will do), and leave the cell"
+                " empty (or NA) where a value is missing."
             )
         return number
     number = float(value)

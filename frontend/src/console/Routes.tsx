@@ -3,21 +3,38 @@ import type { Account } from "@shared/api/types";
 import { type JSX, lazy } from "react";
 import { Route, Switch } from "wouter";
 import { SessionPage } from "./cockpit/SessionPage";
-import { InstrumentPage } from "./instruments/InstrumentPage";
-import { InstrumentsPage } from "./instruments/InstrumentsPage";
-import { ConsentPage } from "./pages/consent/ConsentPage";
-import { EquipmentPage } from "./pages/equipment/EquipmentPage";
 import { PageNotFound, RequirePermission } from "./pages/NoPermission";
-import { NetworkPage } from "./pages/network/NetworkPage";
-import { PeoplePage } from "./pages/people/PeoplePage";
 import { StudiesPage } from "./pages/Studies";
 import { StudyPage } from "./pages/study/StudyPage";
-import { TrackersPage } from "./pages/trackers/TrackersPage";
 import classes from "./Shell.module.css";
 
-// Loaded lazily, so that opening the console for a session does not wait for these.
+// Loaded when they are opened: the first page and the cockpit do not wait for them.
+const InstrumentPage = lazy(async () => ({
+  default: (await import("./instruments/InstrumentPage")).InstrumentPage,
+}));
+const InstrumentsPage = lazy(async () => ({
+  default: (await import("./instruments/InstrumentsPage")).InstrumentsPage,
+}));
+const ConsentPage = lazy(async () => ({
+  default: (await import("./pages/consent/ConsentPage")).ConsentPage,
+}));
+const EquipmentPage = lazy(async () => ({
+  default: (await import("./pages/equipment/EquipmentPage")).EquipmentPage,
+}));
+const NetworkPage = lazy(async () => ({
+  default: (await import("./pages/network/NetworkPage")).NetworkPage,
+}));
+const PeoplePage = lazy(async () => ({
+  default: (await import("./pages/people/PeoplePage")).PeoplePage,
+}));
+const TrackersPage = lazy(async () => ({
+  default: (await import("./pages/trackers/TrackersPage")).TrackersPage,
+}));
 const ReplayPage = lazy(async () => ({
   default: (await import("./replay/ReplayPage")).ReplayPage,
+}));
+const OutageSheet = lazy(async () => ({
+  default: (await import("./pages/outage/OutageSheet")).OutageSheet,
 }));
 const CapturePage = lazy(async () => ({
   default: (await import("./captures/CapturePage")).CapturePage,
@@ -73,6 +90,13 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
         {({ id }) => (
           <RequirePermission permission="run">
             <ConsentPage key={id} id={id} />
+          </RequirePermission>
+        )}
+      </Route>
+      <Route path="/sessions/:id/outage">
+        {({ id }) => (
+          <RequirePermission permission="run">
+            <OutageSheet key={id} id={id} />
           </RequirePermission>
         )}
       </Route>

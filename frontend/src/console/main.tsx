@@ -1,5 +1,6 @@
 import { mountPage } from "@shared/ui/Page";
 import { Console } from "./Console";
-import { translations } from "./i18n";
+import { loaded, translations } from "./i18n";
 
-mountPage({ translations, children: <Console /> });
+// Not `await`: a module that waits at its top would keep the bundler from joining small files.
+void loaded.then(() => mountPage({ translations, children: <Console /> }));

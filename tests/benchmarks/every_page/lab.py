@@ -1,5 +1,6 @@
 """A server with no empty page: sessions of every status, movement, bodies, walks and devices."""
 
+import re
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,14 +12,17 @@ import httpx2
 from sqlalchemy import select
 
 from app.database import Database
+from app.features.design.studies import add_version, newest_version, study_by_key
 from app.features.movement.avatar import SHIPPED
 from app.models import Phase
+from app.protocol.plan import Step
 from tests.benchmarks.session_desk.site import Desk
 from tests.benchmarks.thousand import shipped_database
-from tests.features.builders import STUDY, SessionSpec, build_session
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.features.latency_builders import HISTORY_S, measured, store_movement
 from tests.features.movement.captures.files import walk_bvh
 from tests.features.movement.walking.walkers import FLOOR, SMALL
+from tests.protocol.test_preregistration import SECTION
 from tests.support.humanoid_files import humanoid_file
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
@@ -26,6 +30,8 @@ SESSIONS = 12
 REPLAYED_S = 3.0
 CAPTURE_FRAMES = 60
 PATIENCE_S = 60.0
+COMPUTED_WITHIN_S = 300.0
+RULES = re.compile(r"^valid_when:\n(?:[ #].*\n|\n)*", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -44,6 +50,11 @@ def filled_lab(folder: Path) -> Iterator[FilledLab]:
     """Run a server with twelve simulated sessions, as many of kind people, and one of the rest."""
     server = LiveServer(folder)
     database = shipped_database(server.data_dir)
+    with database.writing() as db:
+        study = study_by_key(db, STUDY)
+        shipped = newest_version(db, study).source_yaml
+        # The builder's sessions have no log of phases, which the shipped study's rules look for.
+        add_version(db, study, RULES.sub("", shipped) + SECTION, NOW)
     completed = _sessions(database)
     database.close()
     with server, server.client() as admin:
@@ -56,6 +67,10 @@ def filled_lab(folder: Path) -> Iterator[FilledLab]:
         desk = Desk(server, admin)
         desk.add_forms_study(1)
         cookies["tablet, form"] = desk.tablet_at_form()
+        # Computed once beforehand: a page that is looked at should not wait for it.
+        for result in ("dashboard", "statistics"):
+            path = f"/api/studies/{STUDY}/{result}"
+            admin.get(path, params={"kind": "simulated"}, timeout=COMPUTED_WITHIN_S)
         places = {
             "study": STUDY,
             "instrument": "karas2020",
@@ -71,12 +86,18 @@ def filled_lab(folder: Path) -> Iterator[FilledLab]:
         yield FilledLab(server, places, cookies)
 
 
+def _falling(step: Step, item: str) -> int:
+    """Return a rating that falls with the added latency, and differs between items."""
+    return 6 - int((step.latency_ms or 0.0) / 100.0) - len(item) % 2
+
+
 def _sessions(database: Database) -> str:
     """Store the completed sessions; return the id of one with a phase that can be replayed."""
     with database.writing() as db:
         for at in range(SESSIONS):
             for kind, code in (("people", "P"), ("simulated", "SIM")):
-                session = build_session(db, SessionSpec(f"{code}-{at:04d}", kind=kind))
+                spec = SessionSpec(f"{code}-{at:04d}", kind=kind, likert=_falling)
+                session = build_session(db, spec)
                 if at > 0 or kind == "people":
                     continue
                 replayed = session

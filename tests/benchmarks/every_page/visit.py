@@ -34,6 +34,14 @@ DRAWN_WITHIN_MS = 20_000
 SETTLES_WITHIN_S = 45.0
 SHIFT_LIMIT = 0.05
 
+COLOUR_RULES = ("color-contrast", "link-in-text-block")
+RUN_AXE_ON_COLOURS = f"""async () => await axe.run(document, {{
+  preload: false, runOnly: {{ type: "rule", values: {list(COLOUR_RULES)} }},
+}})"""
+# The blank page that a window opens with has no storage.
+FORGET = """
+if (location.protocol !== "about:") { localStorage.clear(); sessionStorage.clear(); }
+"""
 OBSERVE_SHIFTS = """
 window.layoutShift = 0;
 window.shifted = new Set();
@@ -43,7 +51,8 @@ new PerformanceObserver((list) => {
     window.layoutShift += entry.value;
     for (const { node } of entry.sources) {
       const place = node instanceof Element ? node : node?.parentElement;
-      if (place) window.shifted.add(`${place.tagName.toLowerCase()}.${place.className}`);
+      const styles = place?.getAttribute("class") ?? "";
+      if (place) window.shifted.add(`${place.tagName.toLowerCase()}.${styles}`);
     }
   }
 }).observe({ type: "layout-shift", buffered: true });
@@ -107,53 +116,73 @@ class Row:
         return {name: getattr(self, name) for name in names}
 
 
-def looks(
-    browser: Browser,
-    lab: FilledLab,
-    route: Route,
-    width_px: int,
-    zoom: int,
-    pictures: Path | None = None,
-) -> Iterator[Row]:
-    """Load a page once and look at it in both themes, which are switched in place."""
-    with _context(browser, lab, route, width_px, zoom) as context:
-        watch = PageWatch()
-        watch.attach(context)
-        if route.allowed:
-            watch.allow(route.allowed)
-        page = context.new_page()
-        traffic = Traffic(page)
-        page.goto(lab.server.url + route.address(lab.places))
-        traffic.settle(SETTLES_WITHIN_S)
-        late = [] if route.waits or _is_drawn(page) else ["still loading"]
-        traffic.settle(SETTLES_WITHIN_S)
-        page.evaluate(MOVEMENTS_DONE)
-        shift, shifted = page.evaluate("[window.layoutShift, [...window.shifted]]")
-        for theme in in_both_schemes(page):
-            rules = _violations(page)
-            out = page.evaluate(OVERFLOW)
-            errors = [*watch.unexpected(), *late]
-            if pictures is not None:
-                name = re.sub(r"\W+", "-", f"{route.name}-{width_px}-{100 * zoom}-{theme}")
-                take_screenshot(page, pictures, name.strip("-"))
-            moved = [f"shifted {name}" for name in shifted]
-            yield Row(
-                route=route.name,
-                width=width_px,
-                theme=theme,
-                zoom=100 * zoom,
-                axe=len(rules),
-                overflow_px=round(out["overflow_px"]),
-                shift=round(shift, 4),
-                errors=len(errors),
-                found=(*rules, *out["widest"], *moved, *errors),
-            )
+@dataclass(frozen=True)
+class Window:
+    """A browser window of one reader, in which page after page is looked at.
+
+    Its pages share what the browser has fetched and compiled, as a reader's do, but nothing that
+    they stored: each is looked at as if it were the first.
+    """
+
+    context: BrowserContext
+    lab: FilledLab
+    width_px: int
+    """Of the window, in pixels of the screen; the page has `width_px / zoom` CSS pixels."""
+    zoom: int
+    watch: PageWatch = field(default_factory=PageWatch)
+
+    def looks(self, route: Route, pictures: Path | None = None) -> Iterator[Row]:
+        """Load a page once and look at it in both themes, which are switched in place."""
+        self.watch.problems.clear()
+        page = self.context.new_page()
+        try:
+            traffic = Traffic(page)
+            page.goto(self.lab.server.url + route.address(self.lab.places))
+            traffic.settle(SETTLES_WITHIN_S)
+            late = [] if route.waits or _is_drawn(page) else ["still loading"]
+            traffic.settle(SETTLES_WITHIN_S)
+            page.evaluate(MOVEMENTS_DONE)
+            shift, shifted = page.evaluate("[window.layoutShift, [...window.shifted]]")
+            rules: dict[str, str] = {}
+            for at, theme in enumerate(in_both_schemes(page)):
+                # Another theme changes colours only, so only their rules are checked again.
+                found = _violations(page, colours_only=at > 0)
+                of_theme = {**rules, **found} if at > 0 else found
+                rules = {rule: text for rule, text in found.items() if rule not in COLOUR_RULES}
+                out = page.evaluate(OVERFLOW)
+                errors = [*self._errors(route), *late]
+                if pictures is not None:
+                    name = f"{route.name}-{self.width_px}-{100 * self.zoom}-{theme}"
+                    take_screenshot(page, pictures, re.sub(r"\W+", "-", name).strip("-"))
+                moved = [f"shifted {name}" for name in shifted]
+                yield Row(
+                    route=route.name,
+                    width=self.width_px,
+                    theme=theme,
+                    zoom=100 * self.zoom,
+                    axe=len(of_theme),
+                    overflow_px=round(out["overflow_px"]),
+                    shift=round(shift, 4),
+                    errors=len(errors),
+                    found=(*of_theme.values(), *out["widest"], *moved, *errors),
+                )
+        finally:
+            page.close()
+
+    def _errors(self, route: Route) -> list[str]:
+        """Return the errors so far that do not belong to the page."""
+        return [
+            problem
+            for problem in self.watch.problems
+            if not route.allowed or re.search(route.allowed, problem) is None
+        ]
 
 
 @contextmanager
-def _context(
-    browser: Browser, lab: FilledLab, route: Route, width_px: int, zoom: int
-) -> Iterator[BrowserContext]:
+def opened_window(
+    browser: Browser, lab: FilledLab, reader: str, width_px: int, zoom: int
+) -> Iterator[Window]:
+    """Open a window with the cookies of `reader`, one of `FilledLab.cookies`, or of nobody."""
     height_px = HEIGHTS_PX.get(width_px, 800)
     context = browser.new_context(
         viewport=ViewportSize(width=width_px // zoom, height=height_px // zoom),
@@ -163,10 +192,13 @@ def _context(
         service_workers="block",
     )
     try:
+        context.add_init_script(FORGET)
         context.add_init_script(OBSERVE_SHIFTS)
-        for name, morsel in SimpleCookie(lab.cookies.get(route.reader, "")).items():
+        for name, morsel in SimpleCookie(lab.cookies.get(reader, "")).items():
             context.add_cookies([{"name": name, "value": morsel.value, "url": lab.server.url}])
-        yield context
+        window = Window(context, lab, width_px, zoom)
+        window.watch.attach(context)
+        yield window
     finally:
         context.close()
 
@@ -180,14 +212,14 @@ def _is_drawn(page: Page) -> bool:
     return True
 
 
-def _violations(page: Page) -> list[str]:
-    """Return the violations of any impact, one rule per line."""
+def _violations(page: Page, *, colours_only: bool) -> dict[str, str]:
+    """Return the violated rules of any impact, each with its elements."""
     page.evaluate(MOVEMENTS_DONE)
     if not page.evaluate("'axe' in window"):
         page.evaluate(axe_script().read_text(encoding="utf-8"))
-    result = page.evaluate(RUN_AXE)
-    return [
-        f"{one['id']} ({one['impact']}) "
+    result = page.evaluate(RUN_AXE_ON_COLOURS if colours_only else RUN_AXE)
+    return {
+        one["id"]: f"{one['id']} ({one['impact']}) "
         + "; ".join(" ".join(map(str, node["target"])) for node in one["nodes"][:4])
         for one in result["violations"]
-    ]
+    }

@@ -1,6 +1,7 @@
 """Stream from headsets to a traced server, then emulate power losses throughout the trace."""
 
 import asyncio
+import math
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -52,14 +53,27 @@ class Recording:
 
 
 def record_streaming(
-    folder: Path, headsets: int, duration_s: float, command: Sequence[str] = REEMBODY
+    folder: Path,
+    headsets: int,
+    most_s: float,
+    command: Sequence[str] = REEMBODY,
+    *,
+    most_acks: float = math.inf,
 ) -> Recording:
-    """Stream in real time for `duration_s`, stop the server and return the recording."""
+    """Stream in real time, stop the server and return the recording.
+
+    The headsets stop after `most_s` seconds, or when they have heard `most_acks` acknowledgements.
+    """
     folder.mkdir()
     with traced_server(folder, command) as server:
         paired = pair_headsets(server, headsets)
-        end_s = time.monotonic() + duration_s
-        asyncio.run(stream(server, paired, lambda: time.monotonic() < end_s))
+        end_s = time.monotonic() + most_s
+
+        def more() -> bool:
+            heard = sum(headset.ledger.acknowledgements for headset in paired)
+            return time.monotonic() < end_s and heard < most_acks
+
+        asyncio.run(stream(server, paired, more))
     events = read_events(folder / RECORD)
     ledgers = {headset.session_id: headset.ledger for headset in paired}
     return Recording(folder, events, promises_of(events), ledgers)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.science.instruments import InstrumentTableError, score_answers
-from app.science.instruments.table import score_csv
+from app.science.instruments.table import score_csv, scored_csv
 from tests.science.instruments.helpers import shipped
 
 KARAS = shipped("karas2020")
@@ -63,6 +63,25 @@ def test_missing_answers_leave_scores_empty() -> None:
     for missing in ("", "NA", " "):
         row = ",".join([*cells[:2], missing, *cells[3:]])
         assert score_csv(KARAS, f"{HEADER}\np1,{row}\n") == f"id,{SCORES}\np1,,7.0,4.0,,\n"
+
+
+def test_codes_of_missing_answers_can_be_declared() -> None:
+    """-99 is refused as an answer until it is declared, and an id of -99 stays."""
+    cells = EXPERT.split(",")
+    row = ",".join([*cells[:2], "-99", *cells[3:]])
+    with pytest.raises(InstrumentTableError, match="the answer is '-99'"):
+        score_csv(KARAS, f"{HEADER}\np1,{row}\n")
+    scored = scored_csv(KARAS, f"{HEADER}\n-99,{row}\n", missing=["-99.0"])
+    assert scored.text == f"id,{SCORES}\n-99,,7.0,4.0,,\n"
+
+
+def test_rows_that_are_the_same_in_every_cell_are_named() -> None:
+    """A form that was copied twice is named by its lines; without ids, equal answers are not."""
+    text = f"{HEADER}\np1,{EXPERT}\np2,{EXPERT}\np1,{EXPERT}\n"
+    (note,) = scored_csv(KARAS, text).notes
+    assert "lines 2 and 4 are the same in every cell" in note
+    without_ids = HEADER.split(",", 1)[1] + f"\n{EXPERT}\n{EXPERT}\n"
+    assert scored_csv(KARAS, without_ids).notes == ()
 
 
 def test_a_header_alone_gives_a_header() -> None:

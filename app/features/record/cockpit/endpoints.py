@@ -11,9 +11,9 @@ from app.features.record.cockpit.schemas import (
     NEVER_STALE,
     CommandRequest,
     EventView,
+    ListedSession,
     NewSession,
     Reveal,
-    SessionSummary,
     SessionView,
     StreamView,
 )
@@ -68,7 +68,7 @@ def create_session(
 @router.get("/studies/{key}/sessions")
 def get_sessions(
     key: str, db: Reading, caller: SignedIn, kind: Kind | None = None
-) -> list[SessionSummary]:
+) -> list[ListedSession]:
     """Return the sessions of a study, newest first."""
     return list_sessions(db, study_by_key(db, key), kind, caller)
 

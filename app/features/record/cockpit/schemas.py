@@ -265,6 +265,22 @@ class SessionSummary(BaseModel):
     shortfalls: list[Shortfall] | None
 
 
+class StepBrief(BaseModel):
+    """Where a running session is: the step's index, counted from 0, of how many, and what it is."""
+
+    index: int
+    steps: int
+    kind: StepKind
+    limb: LimbName | None
+    paused: bool
+
+
+class ListedSession(SessionSummary):
+    """A row in a study's list of sessions; `step` is null unless the session runs."""
+
+    step: StepBrief | None = None
+
+
 class AvatarChangesView(BaseModel):
     """The changes to the avatar that are in force: those of the study, and those of the operator.
 

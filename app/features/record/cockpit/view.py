@@ -19,12 +19,14 @@ from app.features.record.cockpit.schemas import (
     DeviceView,
     EventView,
     HeldView,
+    ListedSession,
     NamedAvatar,
     NoteView,
     RefusalView,
     SessionSummary,
     SessionView,
     SlotInfo,
+    StepBrief,
     StepView,
 )
 from app.features.record.devices import TABLET_SILENT_AFTER_S, devices_of_session
@@ -32,7 +34,9 @@ from app.features.record.ledger import shortfalls_of, slot_of
 from app.features.record.questionnaires import stored_scores
 from app.features.record.self_tests import running_test
 from app.features.record.sessions import (
+    PhaseStatus,
     SessionState,
+    SessionStatus,
     allowed_commands,
     consent_form,
     content_body,
@@ -110,7 +114,7 @@ def _named_avatar(
 
 def list_sessions(
     db: Session, study: Study, kind: str | None, caller: Caller
-) -> list[SessionSummary]:
+) -> list[ListedSession]:
     """Return all sessions of a study, newest first; orders are omitted if `caller` is blinded."""
     # Only the columns shown: a thousand complete sessions with their snapshots would be most of the
     # work.
@@ -137,6 +141,7 @@ def list_sessions(
         query = query.where(StudySession.kind == kind)
     versions = {version.id: version for version in versions_of(db, study)}
     hidden = hidden_sessions(db, study, caller)
+    steps = _steps_of_running(db, study)
     orders: dict[tuple[str, ...], _Order] = {}
     summaries = []
     for row in db.execute(query):
@@ -147,8 +152,32 @@ def list_sessions(
             order = orders.get((version.id, *row.sequence)) or orders.setdefault(
                 (version.id, *row.sequence), _order(protocol_of(version), row.sequence)
             )
-        summaries.append(_summary(row, version.number, row.code, order))
+        summary = _summary(row, version.number, row.code, order)
+        summaries.append(ListedSession(**dict(summary), step=steps.get(row.id)))
     return summaries
+
+
+def _steps_of_running(db: Session, study: Study) -> dict[str, StepBrief]:
+    """Return where each running session of a study is, by its id."""
+    running = db.scalars(
+        select(StudySession).where(
+            StudySession.study_id == study.id, StudySession.status == SessionStatus.ACTIVE
+        )
+    )
+    found = {}
+    for session in running:
+        state, plan = state_of(session), plan_of(db, session)
+        if state.current is None:
+            continue
+        step = plan[state.current]
+        found[session.id] = StepBrief(
+            index=step.index,
+            steps=len(plan),
+            kind=step.kind,
+            limb=step.limb,
+            paused=state.phase is not None and state.phase.status is PhaseStatus.PAUSED,
+        )
+    return found
 
 
 def event_views(db: Session, session: StudySession, caller: Caller) -> list[EventView]:

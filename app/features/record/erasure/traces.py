@@ -8,7 +8,7 @@ removed along with the texts, so that the few answers a form allows cannot be tr
 from collections.abc import Sequence
 from typing import Any, cast
 
-from sqlalchemy import CursorResult, Delete, Update, delete, select, update
+from sqlalchemy import CursorResult, Delete, Update, delete, func, select, update
 from sqlalchemy.orm import Session
 
 from app.models import (
@@ -57,13 +57,12 @@ OF_SESSIONS = (
     PhaseLatency,
     PhaseQuality,
     AlarmRow,
-    Device,
     PairingCode,
 )
 """Tables whose rows of a session are deleted."""
 OF_FORMS = (AnswerCorrection, Answer, ScoreValue)
 """Tables whose rows of a filled-in form are deleted, in an order that respects foreign keys."""
-EMPTIED = (Submission, SessionContent, Suggestion)
+EMPTIED = (Submission, SessionContent, Suggestion, Device)
 """Tables whose rows remain, with their personal content blanked."""
 TOUCHED = tuple(model.__tablename__ for model in (*OF_SESSIONS, *OF_FORMS, *EMPTIED))
 """Every table that an erasure changes, except for the participant's own row."""
@@ -85,6 +84,7 @@ def remove_traces(db: Session, session_ids: Sequence[str]) -> dict[str, int]:
     removed[SessionContent.__tablename__] = _count(db, emptied.values(body=None, salt=None))
     advice = update(Suggestion).where(Suggestion.session_id.in_(session_ids))
     removed[Suggestion.__tablename__] = _count(db, advice.values(body=""))
+    removed[Device.__tablename__] = _revoke_devices(db, session_ids)
     return {table: rows for table, rows in removed.items() if rows}
 
 
@@ -103,6 +103,16 @@ def _empty_forms(db: Session, session_ids: Sequence[str]) -> int:
         row.item_seed = 0
     db.flush()
     return len(rows)
+
+
+def _revoke_devices(db: Session, session_ids: Sequence[str]) -> int:
+    """Blank the devices; of each the hash of its token remains, which is that of a random number.
+
+    By it a device that was away is told that its data were erased, and deletes what it still has.
+    """
+    devices = update(Device).where(Device.session_id.in_(session_ids))
+    revoked = func.coalesce(Device.revoked_at, Device.paired_at)
+    return _count(db, devices.values(name="", last_seen_at=None, revoked_at=revoked))
 
 
 def _count(db: Session, statement: Delete | Update) -> int:

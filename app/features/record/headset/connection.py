@@ -355,8 +355,9 @@ def parse_message(text: str) -> ClientMessages:
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         place = ".".join(map(str, first["loc"]))[:100]
+        at = f" at {place}" if place else ""
         raise InvalidInput(
-            f"message not understood: {first['msg'][:300]} at {place}",
+            f"message not understood: {first['msg'][:300]}{at}",
             value=text[:200],
             remedy="See docs/protocol.md for the messages.",
         ) from error

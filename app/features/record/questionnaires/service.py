@@ -269,12 +269,14 @@ def check_answers(instrument: Instrument, request: SubmissionRequest, *, mode: s
             "shown_order must name every item once",
             value=request.shown_order,
             valid=sorted(instrument.by_key),
+            remedy="Send the order in which the items were shown, as the form gave it.",
         )
     if request.language not in instrument.languages:
         raise InvalidInput(
             f"the form does not exist in {request.language!r}",
             value=request.language,
             valid=list(instrument.languages),
+            remedy="Show the form in one of these languages, and send that one.",
         )
 
 

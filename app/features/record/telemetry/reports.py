@@ -38,6 +38,7 @@ from app.models import (
 )
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
+from app.science.avatar.body import SEGMENT_NAMES
 from app.wire import (
     REPORT_STREAM,
     AddedLatencyReport,
@@ -59,6 +60,10 @@ REPORTS = cast("Table", ClientReport.__table__)
 CONTACTS = cast("Table", Contact.__table__)
 POSSIBLE_M = {"span_m": (0.3, 3.0), "eye_height_m": (0.3, 2.6)}
 """What a calibration can have measured of a person, beside the stature, which its type bounds."""
+POSSIBLE_EYES = (0.75, 0.99)
+"""Height of the eyes of somebody who stands, as a share of the stature; usual is .91 to .95."""
+WITHIN_REACH_M = 1.0
+"""What tracks a part of the body is worn on it: its joint and its residual are not farther off."""
 ROTATION_TOLERANCE = 1e-3
 TAKEN_BACK_AT_MOST, REPEATED_WITHIN = 3, timedelta(minutes=1)
 """How many calls a participant may take back in a while; the next one stays open."""
@@ -213,6 +218,7 @@ def _act_on_calibration(
     session = session_by_id(db, session_id, lock=True)
     _require_in_time(db, session, epoch)
     _require_possible(body)
+    _require_worn(body)
     content = store_content(
         db,
         session_id=session_id,
@@ -228,7 +234,7 @@ def _act_on_calibration(
 
 
 def _require_possible(body: CalibrationReport) -> None:
-    """Raise ReembodyError if a calibration measured what no participant has, or no rotation."""
+    """Raise ReembodyError if a calibration measured what no participant has."""
     measured = {name: getattr(body, name) for name in POSSIBLE_M}
     for name, length_m in measured.items():
         low_m, high_m = POSSIBLE_M[name]
@@ -239,7 +245,45 @@ def _require_possible(body: CalibrationReport) -> None:
                 valid=[low_m, high_m],
                 remedy="Let the participant stand up straight, and calibrate again.",
             )
+    if body.eye_height_m is not None:
+        low_m, high_m = (share * body.stature_m for share in POSSIBLE_EYES)
+        if not low_m <= body.eye_height_m <= high_m:
+            raise ReembodyError(
+                f"eyes at {body.eye_height_m:g} m do not fit a stature of {body.stature_m:g} m",
+                value=body.eye_height_m,
+                valid=[low_m, high_m],
+                remedy="Check the participant's stature, let them stand up straight, and calibrate"
+                " again.",
+            )
+    for name, length_m in body.segments_m.items():
+        if name not in SEGMENT_NAMES or not 0.0 < length_m < body.stature_m:
+            raise ReembodyError(
+                f"segments_m.{name} {length_m:g} is no length of a segment of the body",
+                value={name: length_m},
+                valid=list(SEGMENT_NAMES),
+                remedy="Report lengths in metres, above 0 and below the stature.",
+            )
+
+
+def _require_worn(body: CalibrationReport) -> None:
+    """Raise ReembodyError if what tracks a part is not on the body, or is turned by no rotation."""
+    for goal, residual_m in body.residuals_m.items():
+        if residual_m > WITHIN_REACH_M:
+            raise ReembodyError(
+                f"residuals_m.{goal} {residual_m:g} is farther than a body reaches",
+                value=residual_m,
+                valid=[0.0, WITHIN_REACH_M],
+                remedy="Look what tracks this part, and calibrate again.",
+            )
     for goal, pose in body.tracker_from_goal.items():
+        distance_m = math.hypot(*pose.position_m)
+        if distance_m > WITHIN_REACH_M:
+            raise ReembodyError(
+                f"tracker_from_goal.{goal} is {distance_m:g} m from what tracks it",
+                value=list(pose.position_m),
+                valid=f"at most {WITHIN_REACH_M:g} m",
+                remedy="Look what tracks this part, and calibrate again.",
+            )
         if abs(math.hypot(*pose.rotation) - 1.0) > ROTATION_TOLERANCE:
             raise ReembodyError(
                 f"tracker_from_goal.{goal}.rotation is not a rotation",

@@ -155,7 +155,7 @@ def _check(expected: Mapping[str, float], segments_m: Mapping[str, float]) -> No
         low, high = MIN_RATIO * expected[name], MAX_RATIO * expected[name]
         if not low <= length <= high:
             raise BodyError(
-                f"A {name} of {length} m does not fit the stature: it must be between {low:.3f} and"
+                f"{name} {length} m does not fit the stature: it must be between {low:.3f} and"
                 f" {high:.3f} m. Check the unit (metres) and what was measured."
             )
 

@@ -68,6 +68,8 @@ class FittedWalking:
         space: the space of P_adapt and P_prob.
         static: P_stat.
         stored: what P_mixed learnt, if it was read from a file; else it is learnt when asked for.
+        caveats: sentences on the walks that whoever uses a prediction must know, as that people
+            are only told apart by the names of files.
     """
 
     database: WalkDatabase
@@ -77,6 +79,7 @@ class FittedWalking:
     space: BlendingSpace
     static: StaticFit
     stored: Posterior | None = None
+    caveats: tuple[str, ...] = ()
 
     @cached_property
     def mixed(self) -> TravelTimeModel | None:
@@ -164,11 +167,14 @@ def restored(
     scores: Sequence[ReadingScore],
     static: StaticFit,
     stored: Posterior | None = None,
+    caveats: Sequence[str] = (),
 ) -> FittedWalking:
     """Rebuild a fitted model from its stored parts; the same seed gives the same blends."""
     seed = np.random.default_rng(options.seed).spawn(3)[1]
     space = space_of(database, reading, seed, entries=options.entries, k=options.k)
-    return FittedWalking(database, options, reading, tuple(scores), space, static, stored)
+    return FittedWalking(
+        database, options, reading, tuple(scores), space, static, stored, tuple(caveats)
+    )
 
 
 def space_of(

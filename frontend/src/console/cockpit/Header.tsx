@@ -32,7 +32,7 @@ export function Header(props: HeaderProps): JSX.Element {
   const can = usePermissions();
   return (
     <div className={classes.head}>
-      <div>
+      <div className={classes.who}>
         <h1 className={classes.participant}>{session.participant_code}</h1>
         <div className={classes.study}>
           <Link href={`/studies/${session.study_key}/sessions`}>{session.study_title}</Link>
@@ -65,6 +65,19 @@ export function Header(props: HeaderProps): JSX.Element {
           >
             {t("consent.link")}
           </Button>
+        )}
+        {can("run") && session.status === "planned" && (
+          <Tooltip label={t("outage.open")}>
+            <ActionIcon
+              component={Link}
+              href={`/sessions/${session.id}/outage`}
+              variant="default"
+              size="md"
+              aria-label={t("outage.open")}
+            >
+              <Icon name="plug" size={18} />
+            </ActionIcon>
+          </Tooltip>
         )}
         {onChecks !== undefined && (
           <Tooltip label={t("preflight.open")}>

@@ -6,6 +6,7 @@ import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
+import { ScrollBox } from "../ui/tables";
 import classes from "./DiffView.module.css";
 import type { Draft } from "./useDraft";
 
@@ -48,7 +49,7 @@ export function DiffView({ diff }: { readonly diff: StudyDiff }): JSX.Element {
 function Places({ changes }: { readonly changes: readonly Difference[] }): JSX.Element {
   const { t } = useTexts();
   return (
-    <div className={classes.scroll}>
+    <ScrollBox label={t("diff.place")} className={classes.scroll}>
       <table className={classes.table}>
         <thead>
           <tr>
@@ -71,7 +72,7 @@ function Places({ changes }: { readonly changes: readonly Difference[] }): JSX.E
           ))}
         </tbody>
       </table>
-    </div>
+    </ScrollBox>
   );
 }
 

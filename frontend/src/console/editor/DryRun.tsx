@@ -11,6 +11,7 @@ import { changeWords } from "../avatarChanges/words";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { Order } from "../ui/Order";
+import { ScrollBox } from "../ui/tables";
 import classes from "./DryRun.module.css";
 import type { Draft } from "./useDraft";
 
@@ -177,7 +178,7 @@ function Steps({ timeline }: { readonly timeline: Timeline }): JSX.Element {
   const texts = useTexts();
   const { t } = texts;
   return (
-    <div className={classes.scroll}>
+    <ScrollBox label={t("dryRun.step")} className={classes.scroll}>
       <table className={`${classes.table} numbers`}>
         <thead>
           <tr>
@@ -223,7 +224,7 @@ function Steps({ timeline }: { readonly timeline: Timeline }): JSX.Element {
           ))}
         </tbody>
       </table>
-    </div>
+    </ScrollBox>
   );
 }
 

@@ -43,6 +43,13 @@ export const SECTIONS = [
   },
   { section: "ledger", group: "run", icon: "list", name: "study.tab.ledger" },
   {
+    section: "summary",
+    group: "results",
+    icon: "flag",
+    name: "study.tab.summary",
+    permission: "compare",
+  },
+  {
     section: "dashboard",
     group: "results",
     icon: "chart",

@@ -93,6 +93,12 @@ export const de: Record<keyof typeof en, string> = {
   "sessions.order": "Reihenfolge",
   "sessions.started": "Begonnen",
   "sessions.duration": "Dauer",
+  "sessions.anyStatus": "Jeder Stand",
+  "sessions.step": "Schritt {{number}} von {{total}}:",
+  "sessions.noMatch": "Keine Sitzung passt",
+  "sessions.noMatch.body_one": "{{count}} Sitzung wird nicht gezeigt.",
+  "sessions.noMatch.body_other": "{{count}} Sitzungen werden nicht gezeigt.",
+  "sessions.showAll": "Alle zeigen",
   "sessions.notStarted": "noch nicht begonnen",
   "sessions.empty.title": "Noch keine Sitzungen",
   "sessions.empty.body":

@@ -90,6 +90,12 @@ export const en = {
   "sessions.order": "Order",
   "sessions.started": "Started",
   "sessions.duration": "Duration",
+  "sessions.anyStatus": "Any status",
+  "sessions.step": "Step {{number}} of {{total}}:",
+  "sessions.noMatch": "No session matches",
+  "sessions.noMatch.body_one": "{{count}} session is not shown.",
+  "sessions.noMatch.body_other": "{{count}} sessions are not shown.",
+  "sessions.showAll": "Show all",
   "sessions.notStarted": "not started",
   "sessions.empty.title": "No sessions yet",
   "sessions.empty.body":

@@ -4,6 +4,7 @@ import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { inLanguage } from "@shared/text";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
+import { ScrollBox } from "../ui/tables";
 import classes from "./Instruments.module.css";
 
 export function Items({ preview }: { readonly preview: InstrumentPreview }): JSX.Element {
@@ -12,7 +13,7 @@ export function Items({ preview }: { readonly preview: InstrumentPreview }): JSX
   return (
     <>
       <Shuffle preview={preview} />
-      <div className={classes.scroll}>
+      <ScrollBox label={t("instrument.answers")} className={classes.scroll}>
         <table className={classes.table}>
           <thead>
             <tr>
@@ -44,7 +45,7 @@ export function Items({ preview }: { readonly preview: InstrumentPreview }): JSX
             ))}
           </tbody>
         </table>
-      </div>
+      </ScrollBox>
     </>
   );
 }

@@ -4,6 +4,7 @@ import { inLanguage } from "@shared/text";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { EmptyState } from "../ui/EmptyState";
+import { ScrollBox } from "../ui/tables";
 import classes from "./Instruments.module.css";
 
 export function Scoring({ preview }: { readonly preview: InstrumentPreview }): JSX.Element {
@@ -22,7 +23,7 @@ export function Scoring({ preview }: { readonly preview: InstrumentPreview }): J
           {t("instrument.recode")} <code className={classes.formula}>{preview.recode}</code>
         </p>
       )}
-      <div className={classes.scroll}>
+      <ScrollBox label={t("instruments.scores")} className={classes.scroll}>
         <table className={`${classes.table} numbers`}>
           <thead>
             <tr>
@@ -51,7 +52,7 @@ export function Scoring({ preview }: { readonly preview: InstrumentPreview }): J
             ))}
           </tbody>
         </table>
-      </div>
+      </ScrollBox>
       <p className={classes.lead}>{t("instrument.missing")}</p>
     </>
   );

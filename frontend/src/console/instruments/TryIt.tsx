@@ -54,19 +54,28 @@ export function TryIt({ preview, yaml }: TryItProps): JSX.Element {
           {t("try.again")}
         </Button>
       </div>
-      <div className={classes.try}>
-        <Boundary>
-          <Paper
-            key={round}
-            preview={preview}
-            yaml={yaml}
-            language={shown}
-            draft={draft}
-            onDraft={setDraft}
-          />
-        </Boundary>
-        <Scores preview={preview} yaml={yaml} draft={draft} />
-      </div>
+      {/* The scores appear with the form, which would push them down. */}
+      <Suspense
+        fallback={
+          <Center mih={240} w="100%">
+            <Loader />
+          </Center>
+        }
+      >
+        <div className={classes.try}>
+          <Boundary>
+            <Paper
+              key={round}
+              preview={preview}
+              yaml={yaml}
+              language={shown}
+              draft={draft}
+              onDraft={setDraft}
+            />
+          </Boundary>
+          <Scores preview={preview} yaml={yaml} draft={draft} />
+        </div>
+      </Suspense>
     </>
   );
 }
@@ -98,24 +107,16 @@ function Paper({ preview, yaml, language, draft, onDraft }: PaperProps): JSX.Ele
   if (done) return <Notice tone="info" icon="check" title={t("try.complete")} />;
   return (
     <div className={classes.paper} lang={language}>
-      <Suspense
-        fallback={
-          <Center mih={240} w="100%">
-            <Loader />
-          </Center>
-        }
-      >
-        <FormView
-          administration={administration}
-          language={language}
-          texts={texts}
-          draft={draft}
-          startedAt={startedAt}
-          busy={false}
-          onChange={onDraft}
-          onSubmit={() => setDone(true)}
-        />
-      </Suspense>
+      <FormView
+        administration={administration}
+        language={language}
+        texts={texts}
+        draft={draft}
+        startedAt={startedAt}
+        busy={false}
+        onChange={onDraft}
+        onSubmit={() => setDone(true)}
+      />
     </div>
   );
 }

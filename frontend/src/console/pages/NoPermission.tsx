@@ -19,16 +19,22 @@ export function RequirePermission({ permission, children }: OnlyProps): JSX.Elem
   if (can(permission)) return <>{children}</>;
   return (
     <div style={{ maxWidth: 1240, margin: "0 auto", padding: "28px 24px" }}>
-      <NoPermission />
+      <NoPermission isPage />
     </div>
   );
 }
 
-export function NoPermission(): JSX.Element {
+interface NoPermissionProps {
+  /** Whether nothing else is on the page, such as the title of a study. */
+  readonly isPage?: boolean;
+}
+
+export function NoPermission({ isPage = false }: NoPermissionProps): JSX.Element {
   const { t } = useTexts();
   const account = useAccount().data;
   return (
     <EmptyState
+      isPage={isPage}
       icon="lock"
       title={t("forbidden.title")}
       action={
@@ -48,6 +54,7 @@ export function PageNotFound(): JSX.Element {
   useTitle(t("nowhere.title"));
   return (
     <EmptyState
+      isPage
       icon="info"
       title={t("nowhere.title")}
       action={

@@ -67,9 +67,12 @@ interface ListedProps {
 /** The state of the lab as soon as there is a session; what can be tried until people take part. */
 function Listed({ studies, archived }: ListedProps): JSX.Element {
   const [since] = useState(midnight);
-  const state = useQuery({ ...labQuery(since), enabled: !archived }).data;
+  const lab = useQuery({ ...labQuery(since), enabled: !archived });
+  const state = lab.data;
   const counts = studies.map(({ session_counts }) => session_counts);
   const isUntouched = counts.every((of) => Object.values(of).every((count) => count === 0));
+  // What stands above the studies comes with them: shown later, it would push them down.
+  if (!archived && lab.isPending) return <Loaded query={lab}>{() => null}</Loaded>;
   const nobodyYet = counts.every((of) => (of["people"] ?? 0) === 0);
   return (
     <>

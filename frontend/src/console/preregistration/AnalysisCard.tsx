@@ -29,7 +29,7 @@ export function AnalysisCard({ view, alpha }: AnalysisCardProps): JSX.Element {
           {view.why_no_result}
         </Notice>
       ) : (
-        <Result result={view.result} alpha={alpha} />
+        <PrimaryResultBox result={view.result} alpha={alpha} />
       )}
       <h3 className={classes.small}>{t("prereg.excluded", { count: view.excluded.length })}</h3>
       {view.excluded.length === 0 ? (
@@ -47,12 +47,13 @@ export function AnalysisCard({ view, alpha }: AnalysisCardProps): JSX.Element {
   );
 }
 
-interface ResultProps {
+interface PrimaryResultBoxProps {
   readonly result: PrimaryResult;
   readonly alpha: number;
 }
 
-function Result({ result, alpha }: ResultProps): JSX.Element {
+/** The preregistered test: its sentence, how p compares with the declared level, its numbers. */
+export function PrimaryResultBox({ result, alpha }: PrimaryResultBoxProps): JSX.Element {
   const { t } = useTexts();
   return (
     <div className={classes.result}>

@@ -91,7 +91,12 @@ function NotPreregistered({ study }: { readonly study: StudyDetail }): JSX.Eleme
   );
 }
 
-function Deviations({ deviations }: { readonly deviations: readonly Deviation[] }): JSX.Element {
+/** How the analysis differs from its declaration, and what else a reader has to know. */
+export function Deviations({
+  deviations,
+}: {
+  readonly deviations: readonly Deviation[];
+}): JSX.Element {
   const { t } = useTexts();
   const real = deviations.filter(({ is_note }) => !is_note);
   const notes = deviations.filter(({ is_note }) => is_note);

@@ -16,6 +16,8 @@ import { usePhaseName } from "../steps";
 import { EmptyState } from "../ui/EmptyState";
 import { addressOf, type PhaseRef, type ReplayParams, type ReplayParamsWithPhase } from "./address";
 import { jumpFrom } from "./events";
+import { FilmButton } from "./FilmButton";
+import type { FilmWords } from "./film";
 import { BackLink, Head } from "./Head";
 import { ReplayKeys, SPEEDS, useReplayKeys } from "./keys";
 import { LaneStage } from "./LaneStage";
@@ -95,6 +97,7 @@ interface PlayingProps extends PlayerProps {
 const CAMERAS: readonly CameraMode[] = ["orbit", "follow", "eyes"];
 
 function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element {
+  const { t } = useTexts();
   const duration = seconds(Math.max(...lanes.map(({ replay }) => replay.duration_s)));
   const playback = usePlayback(duration, { time: seconds(params.time), loop: false });
   const [mode, setMode] = useLocalStorage<CameraMode>({
@@ -106,6 +109,7 @@ function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element
   const [at, setAt] = useState(0);
   const [help, helps] = useDisclosure();
   const stages = useStages();
+  const staged = useRef<HTMLDivElement>(null);
   const shown = lanes[Math.min(at, lanes.length - 1)] as Lane;
   const link = () =>
     new URL(addressOf(session.id, { ...params, time: playback.time }), window.location.href).href;
@@ -139,7 +143,7 @@ function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element
           camera={<CameraBar mode={mode} hasEyes stage={stages.all} onMode={setMode} />}
         />
         {refused !== null && <Failure error={refused} />}
-        <div className={classes.stages} data-lanes={lanes.length}>
+        <div ref={staged} className={classes.stages} data-lanes={lanes.length}>
           {lanes.map((lane, index) => (
             <LaneStage
               key={`${lane.ref.session} ${lane.ref.phase}`}
@@ -158,6 +162,17 @@ function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element
           playback={playback}
           duration={duration}
           link={link}
+          film={
+            lanes.some(({ movement }) => movement !== null) && (
+              <FilmButton
+                stages={staged}
+                playback={playback}
+                duration={duration}
+                words={filmWords(session, lanes, t)}
+                name={filmName(session, params, playback.time)}
+              />
+            )
+          }
           onHelp={helps.open}
         />
         <Tracks lanes={lanes} duration={duration} time={playback.time} onSeek={playback.seek} />
@@ -166,6 +181,26 @@ function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element
       <ReplayKeys opened={help} onClose={helps.close} />
     </>
   );
+}
+
+/** A film has the stages with movement only, so only their names. */
+function filmWords(
+  session: SessionView,
+  lanes: readonly Lane[],
+  t: ReturnType<typeof useTexts>["t"],
+): Omit<FilmWords, "time"> {
+  const isPeople = session.kind === "people" || session.kind === "expert";
+  return {
+    names: lanes.filter(({ movement }) => movement !== null).map(({ label }) => label),
+    about: `${session.study_title} · ${session.participant_code}`,
+    mark: isPeople ? null : t(`film.mark.${session.kind === "test" ? "test" : "simulated"}`),
+  };
+}
+
+/** Participant, phase and moment, as far as file systems allow the code. */
+function filmName(session: SessionView, { phase }: ReplayParamsWithPhase, time: number): string {
+  const code = session.participant_code.replaceAll(/[^\w-]+/g, "_");
+  return `${code}_phase${phase}_${time.toFixed(1)}s`;
 }
 
 /** The stages' cameras, individually and moved together. */

@@ -6,7 +6,7 @@ import { Press } from "@shared/stage/Transport";
 import type { Playback } from "@shared/stage/usePlayback";
 import { Icon } from "@shared/ui/Icon";
 import { type Seconds, seconds } from "@shared/units";
-import type { JSX } from "react";
+import type { JSX, ReactNode } from "react";
 import { useTexts } from "../i18n";
 import { activeAt, isActive, jumpFrom, wallAt } from "./events";
 import { SPEEDS } from "./keys";
@@ -19,11 +19,13 @@ interface TransportProps {
   readonly duration: Seconds;
   /** The address of the current moment. */
   readonly link: () => string;
+  /** The button that records it. */
+  readonly film: ReactNode;
   readonly onHelp: () => void;
 }
 
 export function Transport(props: TransportProps): JSX.Element {
-  const { lane, playback, duration, link, onHelp } = props;
+  const { lane, playback, duration, link, film, onHelp } = props;
   const { t } = useTexts();
   const jump = (way: -1 | 1) => {
     const to = jumpFrom(lane.all, playback.time, way);
@@ -51,6 +53,7 @@ export function Transport(props: TransportProps): JSX.Element {
           onChange={(value) => playback.setSpeed(Number(value))}
           data={SPEEDS.map((speed) => ({ value: String(speed), label: `${speed}×` }))}
         />
+        {film}
         <CopyLink link={link()} />
         <Tooltip label={t("keys.title")}>
           <ActionIcon variant="default" size="lg" aria-label={t("keys.title")} onClick={onHelp}>

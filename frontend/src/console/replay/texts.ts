@@ -13,6 +13,15 @@ export const replayEn = {
   "replay.beside.session": "From",
   "replay.link": "Copy link to this moment",
   "replay.linked": "Link copied",
+  "replay.film": "Record a video from this moment",
+  "replay.film.stop": "Stop and save",
+  "replay.film.saved":
+    "Video saved. It is a copy of this participant's data: the server does not know where it is.",
+  "replay.film.failed": "The browser could not record the replay. Nothing was saved.",
+  "replay.film.cannot":
+    "This browser cannot record a video. Use a current Chrome, Edge or Firefox.",
+  "film.mark.simulated": "SIMULATED",
+  "film.mark.test": "TEST",
   "replay.picture": "{{phase}} in 3-D, {{time}} into the phase",
   "replay.legend.participant": "participant",
   "replay.legend.avatar": "avatar",
@@ -128,6 +137,16 @@ export const replayDe: Record<keyof typeof replayEn, string> = {
   "replay.beside.session": "Von",
   "replay.link": "Link zu diesem Moment kopieren",
   "replay.linked": "Link kopiert",
+  "replay.film": "Ab diesem Moment ein Video aufnehmen",
+  "replay.film.stop": "Beenden und speichern",
+  "replay.film.saved":
+    "Das Video ist gespeichert. Es ist eine Kopie der Daten dieser Person: Der Server weiß nicht, wo sie liegt.",
+  "replay.film.failed":
+    "Der Browser konnte die Wiedergabe nicht aufnehmen. Nichts wurde gespeichert.",
+  "replay.film.cannot":
+    "Dieser Browser kann kein Video aufnehmen. Nehmen Sie einen aktuellen Chrome, Edge oder Firefox.",
+  "film.mark.simulated": "SIMULIERT",
+  "film.mark.test": "TEST",
   "replay.picture": "{{phase}} in 3-D, {{time}} nach Beginn der Phase",
   "replay.legend.participant": "Person",
   "replay.legend.avatar": "Avatar",

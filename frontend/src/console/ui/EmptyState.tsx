@@ -9,13 +9,18 @@ interface EmptyStateProps {
   readonly title: string;
   readonly children: ReactNode;
   readonly action?: ReactNode;
+  /** Where it is all there is of a page, its title is the page's. */
+  readonly isPage?: boolean;
 }
 
-export function EmptyState({ icon, title, children, action }: EmptyStateProps): JSX.Element {
+export function EmptyState(props: EmptyStateProps): JSX.Element {
+  const { icon, title, children, action, isPage = false } = props;
   return (
     <div className={classes.empty}>
       <Icon name={icon} size={32} />
-      <Title order={2}>{title}</Title>
+      <Title order={isPage ? 1 : 2} size="h2">
+        {title}
+      </Title>
       <div className={classes.emptyText}>{children}</div>
       {action}
     </div>

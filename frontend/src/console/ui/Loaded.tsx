@@ -7,13 +7,20 @@ import { Failure } from "../errors";
 interface LoadedProps<Data> {
   readonly query: UseQueryResult<Data>;
   readonly children: (data: Data) => ReactNode;
+  /** As high as the window until then, where what comes below must not be pushed down. */
+  readonly isTall?: boolean;
 }
 
-export function Loaded<Data>({ query, children }: LoadedProps<Data>): JSX.Element {
+export function Loaded<Data>({ query, children, isTall = false }: LoadedProps<Data>): JSX.Element {
   if (query.data !== undefined) return <>{children(query.data)}</>;
   if (query.isError) return <Failure error={query.error} onRetry={() => void query.refetch()} />;
+  return <Waiting isTall={isTall} />;
+}
+
+/** What stands where something is still on its way. */
+export function Waiting({ isTall = false }: { readonly isTall?: boolean }): JSX.Element {
   return (
-    <Center mih={240}>
+    <Center mih={isTall ? "90dvh" : 240}>
       <Loader />
     </Center>
   );

@@ -24,7 +24,7 @@ export function KindBadge({ kind }: { readonly kind: Kind }): JSX.Element {
   return (
     <span className={`${classes.badge} ${classes[kind]}`}>
       <Icon name={KIND_ICONS[kind]} size={14} />
-      {t(`kind.${kind}`)}
+      {t(kind === "people" ? "kind.people.one" : `kind.${kind}`)}
     </span>
   );
 }
@@ -36,6 +36,9 @@ const STATUS_ICONS: Readonly<Record<SessionStatus, IconName>> = {
   aborted: "stop",
   withdrawn: "close",
 };
+
+/** All states, in the order in which a session takes them. */
+export const STATUSES = Object.keys(STATUS_ICONS) as readonly SessionStatus[];
 
 /** The state of a session as a word and an icon. */
 export function StatusBadge({ status }: { readonly status: SessionStatus }): JSX.Element {

@@ -266,7 +266,7 @@ function Census({ model, summary }: PartProps): JSX.Element {
   );
   const synthetic = model.kind === "synthetic";
   return (
-    <section className={classes.card} aria-label={t("walking.census")}>
+    <div className={classes.card}>
       <div className={classes.cardHead}>
         <Title order={2} size="h3">
           {t("walking.census")}
@@ -296,6 +296,6 @@ function Census({ model, summary }: PartProps): JSX.Element {
           )
           .join(" · ")}
       </p>
-    </section>
+    </div>
   );
 }

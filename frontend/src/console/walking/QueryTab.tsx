@@ -93,7 +93,7 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
             allowDeselect={false}
           />
         </div>
-        <Loaded query={scene}>
+        <Loaded query={scene} isTall>
           {(there) => (
             <PathPanel
               scene={there}

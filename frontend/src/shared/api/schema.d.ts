@@ -7597,6 +7597,46 @@ export interface components {
             readonly tracker: string;
         };
         /**
+         * ListedSession
+         * @description A row in a study's list of sessions; `step` is null unless the session runs.
+         */
+        readonly ListedSession: {
+            /** Bodies */
+            readonly bodies?: readonly (string | null)[] | null;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "people" | "simulated" | "test" | "expert";
+            /** Participant Code */
+            readonly participant_code: string;
+            /** Sequence */
+            readonly sequence: readonly number[] | null;
+            /** Shortfalls */
+            readonly shortfalls: readonly components["schemas"]["Shortfall"][] | null;
+            /** Simulated */
+            readonly simulated: boolean;
+            /** Started At */
+            readonly started_at: string | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "planned" | "active" | "completed" | "aborted" | "withdrawn";
+            readonly step?: components["schemas"]["StepBrief"] | null;
+            /** Study Version */
+            readonly study_version: number;
+        };
+        /**
          * LiveView
          * @description All doors and sources. `turned_away`: packets of new senders, of which there were too many.
          *
@@ -10223,51 +10263,6 @@ export interface components {
             readonly study_key: string;
         };
         /**
-         * SessionSummary
-         * @description A row in a list of sessions.
-         *
-         *     `sequence`: the latencies of its blocks in ms. `bodies`: the body worn at each of them, null for
-         *     that of the configuration; null instead of the list for blinded readers, and where latencies
-         *     tell the conditions apart.
-         *     `shortfalls`: the rules of its study that a completed session does not meet; it is valid if
-         *     there are none. Null if the study has no rules, or the session is not completed.
-         */
-        readonly SessionSummary: {
-            /** Bodies */
-            readonly bodies?: readonly (string | null)[] | null;
-            /**
-             * Created At
-             * Format: date-time
-             */
-            readonly created_at: string;
-            /** Ended At */
-            readonly ended_at: string | null;
-            /** Id */
-            readonly id: string;
-            /**
-             * Kind
-             * @enum {string}
-             */
-            readonly kind: "people" | "simulated" | "test" | "expert";
-            /** Participant Code */
-            readonly participant_code: string;
-            /** Sequence */
-            readonly sequence: readonly number[] | null;
-            /** Shortfalls */
-            readonly shortfalls: readonly components["schemas"]["Shortfall"][] | null;
-            /** Simulated */
-            readonly simulated: boolean;
-            /** Started At */
-            readonly started_at: string | null;
-            /**
-             * Status
-             * @enum {string}
-             */
-            readonly status: "planned" | "active" | "completed" | "aborted" | "withdrawn";
-            /** Study Version */
-            readonly study_version: number;
-        };
-        /**
          * SessionTrackers
          * @description The trackers that a session's headset uses, and how they lie in its world.
          *
@@ -10945,6 +10940,25 @@ export interface components {
             readonly notes: readonly string[];
             /** Simulated */
             readonly simulated: boolean;
+        };
+        /**
+         * StepBrief
+         * @description Where a running session is: the step's index, counted from 0, of how many, and what it is.
+         */
+        readonly StepBrief: {
+            /** Index */
+            readonly index: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "road_crossing" | "questionnaire" | "debrief";
+            /** Limb */
+            readonly limb: ("hand" | "foot") | null;
+            /** Paused */
+            readonly paused: boolean;
+            /** Steps */
+            readonly steps: number;
         };
         /**
          * StepCurveView
@@ -18004,7 +18018,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": readonly components["schemas"]["SessionSummary"][];
+                    readonly "application/json": readonly components["schemas"]["ListedSession"][];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

@@ -11,7 +11,7 @@ type Schemas = components["schemas"];
 /** A type in which some fields have a narrower type. */
 type With<Type, Exact> = Readonly<Omit<Type, keyof Exact> & Exact>;
 
-export type SessionSummary = Schemas["SessionSummary"];
+export type SessionSummary = Schemas["ListedSession"];
 export type StoredAnswers = Schemas["StoredAnswers"];
 export type SessionView = Schemas["SessionView"];
 export type Step = Schemas["StepView"];

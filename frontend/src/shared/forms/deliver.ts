@@ -6,14 +6,15 @@
  *     unpaired     the device has lost its session: kept until it is paired again
  *     held         this form is not due now: kept, the experimenter decides
  *     superseded   the experimenter has recorded this form already: the device deletes it
+ *     withdrawn    the participant has withdrawn or was erased: the device deletes all their forms
  *     refused      the answers are invalid: returned to be corrected
  */
 import { ApiError } from "../api/request";
 import type { Receipt, Submission } from "../api/types";
-import type { StoredForms } from "./storedForms";
+import { type StoredForms, sessionOf } from "./storedForms";
 
 export type Delivery =
-  | { readonly kind: "stored" | "later" | "unpaired" | "superseded" }
+  | { readonly kind: "stored" | "later" | "unpaired" | "superseded" | "withdrawn" }
   | { readonly kind: "held" | "refused"; readonly error: ApiError };
 
 export type Submit = (submission: Submission) => Promise<Receipt>;
@@ -54,6 +55,7 @@ async function sendForm(
     const delivery = deliveryOf(error);
     if (delivery.kind === "refused") await store.reopen(id);
     if (delivery.kind === "superseded") await store.forget(id);
+    if (delivery.kind === "withdrawn") await store.forgetSession(sessionOf(id));
     return delivery;
   }
   await store.forget(id);
@@ -63,6 +65,7 @@ async function sendForm(
 function deliveryOf(error: unknown): Delivery {
   if (!(error instanceof ApiError)) return { kind: "later" };
   if (error.status === 401) return { kind: "unpaired" };
+  if (error.code === "withdrawn") return { kind: "withdrawn" };
   if (error.code === "not_now") return { kind: "held", error };
   if (error.code === "conflict") return { kind: "superseded" };
   if (error.status === 422 || error.status === 413) return { kind: "refused", error };

@@ -34,6 +34,9 @@ const OLD_MS = 48 * 3_600_000;
 export const formId = (sessionId: string, administration: string): string =>
   `${sessionId}/${administration}`;
 
+/** The session of the form with this id. */
+export const sessionOf = (id: string): string => id.slice(0, id.indexOf("/"));
+
 /** Open a database that holds nothing but forms. */
 export const openForms = (name: string): Promise<IDBPDatabase<FormTables>> =>
   openDB<FormTables>(name, 1, {
@@ -110,6 +113,15 @@ export class StoredForms {
   /** Delete a form that the server has stored. */
   async forget(id: string): Promise<void> {
     await (await this.#database).delete("kept", id);
+  }
+
+  /** Delete all forms of a session: its participant has withdrawn, or was erased. */
+  async forgetSession(sessionId: string): Promise<void> {
+    const transaction = (await this.#database).transaction("kept", "readwrite");
+    for (const form of await transaction.store.getAll()) {
+      if (form.sessionId === sessionId) await transaction.store.delete(form.id);
+    }
+    await transaction.done;
   }
 
   /** Delete drafts that have not changed for two days; submissions that wait to be sent stay. */

@@ -31,6 +31,35 @@ export function createTranslations(tables: Record<Language, Table>, language: La
   return instance;
 }
 
+/**
+ * Translations whose table is loaded when its language is chosen, which shows as soon as it is there.
+ * `load` must not fail; `loaded` is fulfilled once the first table is there.
+ */
+export function loadTranslations(
+  load: (language: Language) => Promise<Table>,
+  language: Language,
+): { readonly translations: i18n; readonly loaded: Promise<unknown> } {
+  const translations = createInstance();
+  const loaded = translations
+    .use(initReactI18next)
+    .use({
+      type: "backend",
+      init: () => {},
+      read: (asked: string, _namespace: string, done: (error: null, table: Table) => void) => {
+        void load(asked === "de" ? "de" : "en").then((table) => done(null, table));
+      },
+    })
+    .init({
+      lng: language,
+      // Every language has every text.
+      fallbackLng: false,
+      keySeparator: false,
+      nsSeparator: false,
+      interpolation: { escapeValue: false }, // React escapes
+    });
+  return { translations, loaded };
+}
+
 export interface Texts<Key extends string> {
   readonly t: Translate<Key>;
   readonly language: Language;

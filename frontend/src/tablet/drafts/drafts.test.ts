@@ -133,6 +133,16 @@ describe("delivering a form", () => {
     expect((await store.open("session", "form#1", NOW)).idempotencyKey).toBe(form.idempotencyKey);
   });
 
+  it("deletes all forms of somebody who has withdrawn, and nobody else's", async () => {
+    await store.open("session", "form#2", NOW);
+    await store.open("other", "form#1", NOW);
+    expect(await attempt(failing(refusal(410, "withdrawn")))).toEqual({ kind: "withdrawn" });
+    expect(await store.waiting("session")).toEqual([]);
+    expect((await store.open("session", "form#1", NOW)).idempotencyKey).not.toBe(
+      form.idempotencyKey,
+    );
+  });
+
   it("deletes it if the experimenter has recorded the form already", async () => {
     expect(await attempt(failing(refusal(409, "conflict")))).toEqual({ kind: "superseded" });
     expect(await store.waiting("session")).toEqual([]);

@@ -30,7 +30,7 @@ interface StoredFormHandle {
 
 /**
  * Keep a form's draft on disk and deliver it; `onSettled` is called when the screen may have
- * changed: stored, superseded or unpaired.
+ * changed: stored, superseded, withdrawn or unpaired.
  */
 export function useStoredForm(
   sessionId: string,
@@ -63,6 +63,7 @@ export function useStoredForm(
         return;
       case "stored":
       case "superseded":
+      case "withdrawn":
         setPhase({ name: "done" });
         settled.current();
         return;

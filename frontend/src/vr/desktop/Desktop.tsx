@@ -1,5 +1,6 @@
 /** The study on a screen instead of in a headset, with the keys that move the participant. */
 import { Loader } from "@mantine/core";
+import { number } from "@shared/format";
 import { type JSX, useEffect, useRef, useState } from "react";
 import { useTexts } from "../i18n";
 import { DESKTOP_KEYS } from "../tracking";
@@ -20,6 +21,8 @@ interface DesktopProps {
   readonly visit: {
     readonly isReady: boolean;
     readonly problem: string | null;
+    /** The pictures a second, where they are too few for the session's clock; else null. */
+    readonly slowHz: number | null;
     readonly showOnScreen: (host: HTMLElement) => () => void;
   };
 }
@@ -45,7 +48,21 @@ export function Desktop({ visit }: DesktopProps): JSX.Element {
           {problem}
         </p>
       )}
+      {visit.slowHz !== null && <TooSlow rateHz={visit.slowHz} />}
       <Help />
+    </div>
+  );
+}
+
+/** Pictures a second below which the session's clock stands still. */
+const LEAST_RATE_HZ = 2;
+
+function TooSlow({ rateHz }: { readonly rateHz: number }): JSX.Element {
+  const { t, language } = useTexts();
+  const values = { rate: number(rateHz, language, 1), least: LEAST_RATE_HZ };
+  return (
+    <div className={classes.slow} role="alert">
+      <strong>{t("desktop.slow.title", values)}</strong> {t("desktop.slow.body", values)}
     </div>
   );
 }
@@ -82,7 +99,9 @@ function Help(): JSX.Element {
   }
   return (
     <aside className={classes.help} aria-label={t("desktop.title")}>
-      <p>{t("desktop.begin")}</p>
+      <p>
+        {t("desktop.begin")} {t("desktop.hit")}
+      </p>
       <dl>
         {rows.map(([key, what]) => (
           <div key={key}>

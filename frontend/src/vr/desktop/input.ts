@@ -8,10 +8,7 @@ const REACH_BUTTON = 2;
 export function listenTo(element: HTMLElement, source: DesktopSource): () => void {
   const { controls } = source;
   const isLocked = (): boolean => document.pointerLockElement === element;
-  const letGo = (): void => {
-    controls.releaseAll();
-    source.isSelecting = false;
-  };
+  const letGo = (): void => controls.releaseAll();
   const onButton = (event: MouseEvent): void => {
     const isDown = event.type === "mousedown";
     if (isDown && !isLocked()) {
@@ -19,7 +16,7 @@ export function listenTo(element: HTMLElement, source: DesktopSource): () => voi
       void Promise.resolve(element.requestPointerLock()).catch(() => undefined);
       return;
     }
-    if (event.button === SELECT_BUTTON) source.isSelecting = isDown;
+    if (event.button === SELECT_BUTTON) controls.select(isDown);
     if (event.button === REACH_BUTTON) controls.isReaching = isDown;
   };
   const onMove = (event: MouseEvent): void => {

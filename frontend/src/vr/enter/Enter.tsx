@@ -41,8 +41,9 @@ export function Enter(): JSX.Element {
     <VisitPage
       key={pairing.token}
       pairing={pairing}
+      onCode={pairingByCode.mutate}
       onUnpaired={(isRefused) => {
-        forgetPairing();
+        forgetPairing(isRefused);
         setDisconnected(isRefused);
         setPairing(null);
       }}
@@ -133,17 +134,7 @@ function PairingPage({ pairing, isDisconnected }: PairingPageProps): JSX.Element
         <Title order={1}>{t("pair.title")}</Title>
         <p className={classes.lead}>{t("pair.lead")}</p>
       </div>
-      <CodeEntry
-        characters={characters}
-        disabled={isPending}
-        label={t("pair.code")}
-        deleteLabel={t("pair.delete")}
-        onCharacters={setCharacters}
-        onCode={send}
-      />
-      <NameField />
       <div className={classes.state}>
-        {isPending && <Waiting text={t("pair.connecting")} />}
         {error !== null && (
           <Failure
             error={error}
@@ -156,6 +147,18 @@ function PairingPage({ pairing, isDisconnected }: PairingPageProps): JSX.Element
             {t("pair.ended.body")}
           </Notice>
         )}
+      </div>
+      <CodeEntry
+        characters={characters}
+        disabled={isPending}
+        label={t("pair.code")}
+        deleteLabel={t("pair.delete")}
+        onCharacters={setCharacters}
+        onCode={send}
+      />
+      {isPending && <Waiting text={t("pair.connecting")} />}
+      <NameField />
+      <div className={classes.state}>
         <SupportNotice support={support} />
       </div>
     </Frame>
@@ -166,6 +169,8 @@ function PairingPage({ pairing, isDisconnected }: PairingPageProps): JSX.Element
 
 interface VisitPageProps {
   readonly pairing: Pairing;
+  /** The code of the next session was entered. */
+  readonly onCode: (code: string) => void;
   /** `isRefused`: the server no longer knows this headset; else somebody asked for another code. */
   readonly onUnpaired: (isRefused: boolean) => void;
 }
@@ -178,7 +183,7 @@ const UNPAIRED = new Set([
   "address",
 ]);
 
-function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
+function VisitPage({ pairing, onCode, onUnpaired }: VisitPageProps): JSX.Element {
   const { t, language, setLanguage } = useTexts();
   const support = useSupport();
   const visit = useVisit(pairing);
@@ -214,6 +219,7 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
         <Title order={1}>{visit.isOver ? t("enter.over") : t("enter.title")}</Title>
         <p className={classes.lead}>{visit.isOver ? t("enter.overBody") : t("enter.lead")}</p>
       </div>
+      {(visit.isOver || failure?.code === "withdrawn") && <NextCode onCode={onCode} />}
       {!visit.isOver && (
         <Button
           className={classes.enter ?? ""}
@@ -246,7 +252,7 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
       <div className={classes.state}>
         <VisitNotices visit={visit} />
         <SupportNotice support={support} />
-        {!visit.isReady && (
+        {!visit.isReady && failure?.code !== "journal_in_use" && (
           <Button variant="subtle" onClick={() => onUnpaired(false)}>
             {t("enter.disconnect")}
           </Button>
@@ -256,6 +262,28 @@ function VisitPage({ pairing, onUnpaired }: VisitPageProps): JSX.Element {
   );
 }
 
+/** After the end: the code of the next session, without a way around. */
+function NextCode({ onCode }: { readonly onCode: (code: string) => void }): JSX.Element {
+  const { t } = useTexts();
+  const [characters, setCharacters] = useState("");
+  return (
+    <section className={classes.next} aria-label={t("enter.next")}>
+      <p className={classes.lead}>{t("enter.next")}</p>
+      <CodeEntry
+        characters={characters}
+        disabled={false}
+        label={t("pair.code")}
+        deleteLabel={t("pair.delete")}
+        onCharacters={setCharacters}
+        onCode={onCode}
+      />
+    </section>
+  );
+}
+
+/** Failures that people meet, told in the page's language; all others in the server's words. */
+const IN_OWN_WORDS = new Set(["foreign_journal", "withdrawn", "journal_in_use", "taken_over"]);
+
 function VisitNotices({ visit }: { readonly visit: VisitState }): JSX.Element {
   const { t } = useTexts();
   const { failure, problem, isReady, isConnected, vr, isOver, isUnloaded } = visit;
@@ -264,7 +292,14 @@ function VisitNotices({ visit }: { readonly visit: VisitState }): JSX.Element {
       {failure?.code === "foreign_journal" && (
         <Notice tone="bad" title={t("enter.foreign")} remedy={t("enter.foreign.remedy")} />
       )}
-      {failure !== null && failure.code !== "foreign_journal" && (
+      {failure?.code === "withdrawn" && <Notice tone="info">{t("enter.withdrawn")}</Notice>}
+      {failure?.code === "journal_in_use" && (
+        <Notice tone="warn" title={t("enter.inUse")} remedy={t("enter.inUse.remedy")} />
+      )}
+      {failure?.code === "taken_over" && (
+        <Notice tone="warn" title={t("enter.takenOver")} remedy={t("enter.takenOver.remedy")} />
+      )}
+      {failure !== null && !IN_OWN_WORDS.has(failure.code) && (
         <Notice tone="bad" title={t("enter.stopped")} remedy={failure.remedy}>
           {failure.message}
         </Notice>

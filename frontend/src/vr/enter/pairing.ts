@@ -5,6 +5,7 @@
  * the server rejects it or another code is used.
  */
 import { ApiError, answer, server } from "@shared/api/request";
+import { rememberEarlier } from "./earlier";
 
 export interface Pairing {
   readonly sessionId: string;
@@ -26,10 +27,19 @@ export function storedPairing(storage: Pick<Storage, "getItem"> = localStorage):
   }
 }
 
-export const storePairing = (pairing: Pairing): void =>
-  localStorage.setItem(KEY, JSON.stringify(pairing));
+/** Keep a pairing; that of another session is kept among the earlier ones. */
+export function storePairing(pairing: Pairing, storage: Storage = localStorage): void {
+  const before = storedPairing(storage);
+  if (before !== null && before.sessionId !== pairing.sessionId) rememberEarlier(before, storage);
+  storage.setItem(KEY, JSON.stringify(pairing));
+}
 
-export const forgetPairing = (): void => localStorage.removeItem(KEY);
+/** `isRefused`: the server does not know it any more; else it may still have something to send. */
+export function forgetPairing(isRefused: boolean, storage: Storage = localStorage): void {
+  const before = storedPairing(storage);
+  if (before !== null && !isRefused) rememberEarlier(before, storage);
+  storage.removeItem(KEY);
+}
 
 interface Paired {
   readonly device: string;

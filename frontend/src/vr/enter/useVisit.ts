@@ -13,7 +13,8 @@ import {
   type Welcome,
 } from "../telemetry";
 import { DesktopSource } from "../tracking";
-import type { Pairing } from "./pairing";
+import { discardForms, discardSession, sendEarlier } from "./earlier";
+import { forgetPairing, type Pairing } from "./pairing";
 
 /** `left`: VR was shown and is not any more. */
 export type VrState = "not_yet" | "entering" | "shown" | "left";
@@ -28,6 +29,8 @@ export interface VisitState {
   /** Why the connection has ended for good. */
   readonly failure: Failure | null;
   readonly vr: VrState;
+  /** The pictures a second on this screen, where they are too few; else null. */
+  readonly slowHz: number | null;
   /** Why VR could not be shown. */
   readonly problem: string | null;
   /** A part of this page could not be loaded; the page says why, and what to do. */
@@ -54,6 +57,7 @@ export function useVisit(pairing: Pairing): VisitState {
   const [isBetween, setBetween] = useState(false);
   const [vrState, setVrState] = useState<VrState>("not_yet");
   const [problem, setProblem] = useState<string | null>(null);
+  const [slowHz, setSlowHz] = useState<number | null>(null);
   const [isPartMissing, setUnloaded] = useState(false);
   const vr = useRef<Vr | null>(null);
   const fail = useCallback((error: unknown) => {
@@ -62,15 +66,33 @@ export function useVisit(pairing: Pairing): VisitState {
     else setProblem(error instanceof Error ? error.message : String(error));
   }, []);
 
+  const isWithdrawn = (status?.failure ?? failure)?.code === "withdrawn";
+  useEffect(() => {
+    if (!isWithdrawn) return;
+    setOver(true);
+    forgetPairing(true);
+    const discard = async () => {
+      // Closed first: a journal that is open cannot be deleted.
+      await telemetry?.close();
+      await discardSession(pairing.sessionId);
+    };
+    void discard().catch(() => undefined);
+  }, [isWithdrawn, telemetry, pairing]);
+
   useEffect(() => {
     const leaving = new AbortController();
     const { signal } = leaving;
     let client: TelemetryClient | null = null;
     const open = async () => {
+      void sendEarlier(pairing.sessionId, optionsFor).catch(() => undefined);
       client = await openTelemetryInWorker(optionsFor(pairing), { onStatus: setStatus, signal });
       if (signal.aborted) return client.close();
       const follow = (state: HeadsetState) => {
         setOver(OVER.has(state.status));
+        if (state.status === "withdrawn") {
+          forgetPairing(true);
+          void discardForms(pairing.sessionId).catch(() => undefined);
+        }
         setBetween(isBetweenSteps(state));
       };
       client.onState(follow);
@@ -115,7 +137,7 @@ export function useVisit(pairing: Pairing): VisitState {
     (host: HTMLElement) => {
       const statureM = telemetry?.state.participant.stature_m ?? USUAL_STATURE_M;
       const source = new DesktopSource(statureM);
-      vr.current?.showOnScreen(host, source);
+      vr.current?.showOnScreen(host, source, setSlowHz);
       setVrState("shown");
       return listenTo(host, source);
     },
@@ -130,6 +152,7 @@ export function useVisit(pairing: Pairing): VisitState {
     isBetween,
     failure: status?.failure ?? failure,
     vr: vrState,
+    slowHz,
     problem,
     isUnloaded: isPartMissing,
     enter,

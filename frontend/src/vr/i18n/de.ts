@@ -22,8 +22,16 @@ export const de: Readonly<Record<keyof typeof en, string>> = {
     "Die Verbindung ist unterbrochen und wird wiederhergestellt. Alles bisher Aufgezeichnete bleibt auf dieser VR-Brille erhalten.",
   "enter.over": "Die Sitzung ist beendet",
   "enter.overBody": "Sie können die VR-Brille abnehmen. Vielen Dank für Ihre Teilnahme.",
+  "enter.next": "Für die nächste Sitzung geben Sie deren Code ein.",
   "enter.failed": "VR konnte nicht gestartet werden",
   "enter.stopped": "Diese VR-Brille hat angehalten",
+  "enter.withdrawn":
+    "Die Teilnahme wurde beendet. Was diese VR-Brille noch von der Sitzung hatte, wurde gelöscht.",
+  "enter.inUse": "Diese Studie ist in einem anderen Tab offen",
+  "enter.inUse.remedy": "Schließen Sie den anderen Tab und laden Sie diese Seite neu.",
+  "enter.takenOver": "Eine andere Seite dieser VR-Brille setzt die Sitzung fort",
+  "enter.takenOver.remedy":
+    "Machen Sie dort weiter. Um hier weiterzumachen, laden Sie diese Seite neu.",
   "enter.foreign": "Dieses Headset hat noch Aufzeichnungen einer anderen Sitzung",
   "enter.foreign.remedy":
     "Sie sind noch nicht beim Studienrechner. Koppeln Sie das Headset zuerst wieder mit jener Sitzung: Sie werden gesendet, sobald es verbunden ist. Verwenden Sie danach den Code dieser Sitzung.",
@@ -78,6 +86,11 @@ export const de: Readonly<Record<keyof typeof en, string>> = {
   "desktop.starting": "Die Studie wird auf diesem Bildschirm vorbereitet",
   "desktop.begin":
     "Klicken Sie in das Bild, um sich mit der Maus umzusehen. Esc gibt sie wieder frei.",
+  "desktop.hit":
+    "Eine Box treffen: Sehen Sie sie an, halten Sie die rechte Maustaste und drehen Sie das Mausrad, bis die Hand sie berührt. Eine Box für den Fuß: Sehen Sie sie an und drücken Sie Q oder E.",
+  "desktop.slow.title": "Dieses Gerät zeichnet nur {{rate}} Bilder in der Sekunde.",
+  "desktop.slow.body":
+    "Die Uhr der Sitzung steht still, bis es mindestens {{least}} sind. Schließen Sie andere Programme und Tabs, verkleinern Sie dieses Fenster, schalten Sie in den Einstellungen des Browsers die Grafikbeschleunigung ein oder nehmen Sie einen schnelleren Rechner.",
   "desktop.mouse": "Maus",
   "desktop.look": "umsehen",
   "desktop.rightButton": "Rechte Taste",

@@ -20,8 +20,15 @@ export const en = {
     "The connection is lost and is being restored. Everything recorded so far is kept on this headset.",
   "enter.over": "The session has ended",
   "enter.overBody": "You can take the headset off. Thank you for taking part.",
+  "enter.next": "For the next session, enter its code.",
   "enter.failed": "VR could not be started",
   "enter.stopped": "This headset has stopped",
+  "enter.withdrawn":
+    "The participant has withdrawn. What this headset still had of the session was deleted.",
+  "enter.inUse": "This study is open in another tab",
+  "enter.inUse.remedy": "Close the other tab, then reload this page.",
+  "enter.takenOver": "Another page of this headset goes on with the session",
+  "enter.takenOver.remedy": "Continue there. To go on here, reload this page.",
   "enter.foreign": "This headset still keeps recordings of another session",
   "enter.foreign.remedy":
     "They have not reached the study computer. Pair the headset with that session again first: they are sent as soon as it is connected. Then use the code of this session.",
@@ -71,6 +78,11 @@ export const en = {
   "desktop.title": "Desktop mode",
   "desktop.starting": "Preparing the study on this screen",
   "desktop.begin": "Click into the picture to look around with the mouse. Esc releases it.",
+  "desktop.hit":
+    "To hit a box: look at it, hold the right mouse button, and turn the wheel until the hand touches it. A box for a foot: look at it and press Q or E.",
+  "desktop.slow.title": "This device draws only {{rate}} pictures a second.",
+  "desktop.slow.body":
+    "The session's clock stands still until there are at least {{least}}. Close other programs and tabs, make this window smaller, turn on graphics acceleration in the browser's settings, or use a faster computer.",
   "desktop.mouse": "Mouse",
   "desktop.look": "look around",
   "desktop.rightButton": "Right button",

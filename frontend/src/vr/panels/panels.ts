@@ -19,11 +19,23 @@ import type { Measure } from "./surface/wrap";
 const OUT_OF_SIGHT_RAD = (55 * Math.PI) / 180;
 /** How far to the right a panel stands that leaves the mirror free. */
 const BESIDE_RAD = (32 * Math.PI) / 180;
+/** Half of a panel's width as it is seen, and a gap to the edge of a window. */
+const HALF_PANEL_RAD = (24.5 * Math.PI) / 180;
+const EDGE_RAD = (2 * Math.PI) / 180;
 const NEAR_M = 0.5;
 const FAR_M = 2.6;
 const AWAY_S = 1.5;
 const LEAST_DISTANCE_M = 0.8;
 const WALL_GAP_M = 0.15;
+
+/**
+ * How far to the right a panel stands. `halfViewRad`: from the middle of a window to its edge, in
+ * which the whole panel has to be seen without turning a head; null in a headset.
+ */
+export function besideRad(halfViewRad: number | null): number {
+  if (halfViewRad === null) return BESIDE_RAD;
+  return Math.min(BESIDE_RAD, Math.max(0, halfViewRad - HALF_PANEL_RAD - EDGE_RAD));
+}
 
 export interface PanelsOptions {
   /** The plane of the wall with the mirror, behind which a panel must not stand. */
@@ -44,6 +56,7 @@ export class Panels {
   #isPlaced = false;
   #isLow = false;
   #isBeside = false;
+  #halfViewRad: number | null = null;
   #shownKey = "";
   #awaySinceS: number | null = null;
   /** Called when something was pressed: for a sound, or a pulse of the controller. */
@@ -79,6 +92,13 @@ export class Panels {
         this.#isNew = true;
       };
     }
+  }
+
+  /** The study is shown in a window, of which this is half the angle of view. */
+  set halfViewRad(halfViewRad: number) {
+    if (halfViewRad === this.#halfViewRad) return;
+    this.#halfViewRad = halfViewRad;
+    this.#isPlaced = false;
   }
 
   /** Let the panel stand in front of the wearer again, as the operator may ask for. */
@@ -134,7 +154,7 @@ export class Panels {
     if (eyes === null) return;
     const heading = headingOf(eyes);
     if (!this.#isPlaced) {
-      const towards = heading - (this.#isBeside ? BESIDE_RAD : 0);
+      const towards = heading - (this.#isBeside ? besideRad(this.#halfViewRad) : 0);
       const distanceM = this.#distanceM(eyes.positionM, towards);
       this.#surface.place(eyes.positionM, towards, distanceM, this.#isLow);
       this.#isPlaced = true;

@@ -3,6 +3,7 @@ import { describe, expect, it } from "vitest";
 import { layOut } from "../panels/surface/layout";
 import { deviceName } from "./device";
 import { PLAN, placeIn, planDurationS } from "./plan";
+import { AWAITED } from "./preparation";
 import type { SelfTestView, Verdict } from "./report";
 import { type Progress, selfTestScreen } from "./screens";
 import { selfTestDe, selfTestEn, selfTestWords } from "./texts";
@@ -52,11 +53,12 @@ describe("the panel of the test", () => {
     const place = placeIn(PLAN, 70);
     if (place === null) throw new Error("The plan is shorter than 70 s.");
     const states: readonly Progress[] = [
-      { kind: "preparing" },
+      ...AWAITED.map((awaited) => ({ kind: "preparing", awaited, waitedS: 30 }) as const),
       { kind: "measuring", place, isScripted: true },
       { kind: "sending" },
       { kind: "kept" },
       { kind: "short" },
+      { kind: "unseen" },
       { kind: "stored", view: viewOf(CODES.map((code) => verdict(code))) },
       { kind: "stored", view: viewOf([verdict("duration", { status: "ok" })]) },
     ];
@@ -66,7 +68,15 @@ describe("the panel of the test", () => {
         const { heightDmm, targets } = layOut(selfTestScreen(words, progress, language), measure);
         expect(heightDmm).toBeLessThan(1100);
         const named = targets.map(({ target }) => target);
-        const ways = { preparing: 0, sending: 0, measuring: 1, kept: 1, short: 2, stored: 2 };
+        const ways = {
+          preparing: 0,
+          sending: 0,
+          measuring: 1,
+          kept: 1,
+          short: 2,
+          unseen: 2,
+          stored: 2,
+        };
         expect([progress.kind, named.length]).toEqual([progress.kind, ways[progress.kind]]);
       }
     }

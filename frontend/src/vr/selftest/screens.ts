@@ -6,14 +6,18 @@ import type { Seconds } from "@shared/units";
 import type { PanelScreen } from "../panels";
 import type { PlanPlace } from "./plan";
 import { PLAN, planDurationS } from "./plan";
+import { type Awaited, PREPARED_WITHIN_S } from "./preparation";
 import { LEAST_DURATION_S, type SelfTestView } from "./report";
 import type { SelfTestWords } from "./texts";
 
-/** How far a test is. `kept`: it could not be sent yet. `short`: nothing was worth a report. */
+/**
+ * How far a test is. `kept`: it could not be sent yet. `short`: nothing was worth a report. `unseen`:
+ * the device drew no pictures in all the time.
+ */
 export type Progress =
-  | { readonly kind: "preparing" }
+  | { readonly kind: "preparing"; readonly awaited: Awaited; readonly waitedS: number }
   | { readonly kind: "measuring"; readonly place: PlanPlace; readonly isScripted: boolean }
-  | { readonly kind: "sending" | "kept" | "short" }
+  | { readonly kind: "sending" | "kept" | "short" | "unseen" }
   | { readonly kind: "stored"; readonly view: SelfTestView };
 
 /** The most verdicts that a panel explains: the page has all of them. */
@@ -55,7 +59,13 @@ export function selfTestScreen(
         key: "selftest preparing",
         isLow: true,
         title: words("selftest.preparing.title"),
-        body: prose(words("selftest.preparing.body")),
+        body: prose(
+          words("selftest.preparing.body"),
+          words(`selftest.awaited.${progress.awaited}`, {
+            waited: progress.waitedS,
+            most: PREPARED_WITHIN_S,
+          }),
+        ),
       };
     case "measuring":
       return measuringScreen(words, progress.place, progress.isScripted);
@@ -77,6 +87,13 @@ export function selfTestScreen(
         key: "selftest short",
         title: words("selftest.short.title"),
         body: prose(words("selftest.short.body", { seconds: LEAST_DURATION_S })),
+        buttons: [again, { ...leave, isPrimary: true }],
+      };
+    case "unseen":
+      return {
+        key: "selftest unseen",
+        title: words("selftest.unseen.title"),
+        body: prose(words("selftest.unseen.body")),
         buttons: [again, { ...leave, isPrimary: true }],
       };
     case "stored":

@@ -15,7 +15,8 @@ import { paletteOf, STANDARD, World } from "../world";
 import { PageErrors } from "./errors";
 import { givenName } from "./givenName";
 import { Measurement } from "./measure/measurement";
-import { PLAN, type PlanPlace, placeIn } from "./plan";
+import { PLAN, type PlanPlace, placeIn, planDurationS } from "./plan";
+import { Preparation } from "./preparation";
 import { LEAST_DURATION_S, type Report } from "./report";
 import { type Progress, selfTestScreen } from "./screens";
 import { Sending } from "./sending";
@@ -55,10 +56,14 @@ declare global {
 
 const NEAR_M = 0.05;
 const FAR_M = 50;
-/** What cannot be prepared within this time is missing in the report, s. */
-const PREPARED_WITHIN_S = 30;
+/** A measurement without frames ends this long after its plan, s. */
+const OVERDUE_S = 5;
+const WATCH_EVERY_MS = 1000;
 /** Neither devices nor boxes are drawn. */
 const NOTHING = [] as const;
+
+/** The page's monotonic clock, s. */
+const nowS = (): number => performance.now() / 1000;
 
 export class SelfTest {
   readonly #parts: SelfTestParts;
@@ -75,10 +80,12 @@ export class SelfTest {
   #host: HTMLElement | null = null;
   #nominalHz: number | null = null;
   #sending: Sending | null = null;
-  #isPrepared = false;
-  #prepareSinceS: number | null = null;
+  #preparation = new Preparation(nowS());
   #measuring: Measurement | null = null;
-  #progress: Progress = { kind: "preparing" };
+  #measuringSinceS = 0;
+  #progress: Progress = this.#preparation.progress(nowS());
+  /** Frames may not come at all, and somebody waits. */
+  readonly #watch = setInterval(() => this.#look(), WATCH_EVERY_MS);
   /** The page follows whole seconds. */
   #toldS = 0;
   #isPlaced = false;
@@ -148,6 +155,7 @@ export class SelfTest {
     if (this.#isDisposed) return;
     this.stop();
     this.#isDisposed = true;
+    clearInterval(this.#watch);
     void this.#session?.end().catch(() => undefined);
     this.#errors.dispose();
     this.#body.dispose();
@@ -166,14 +174,15 @@ export class SelfTest {
 
   /** Load the body, if it is not there yet, and open a socket; the report says what failed. */
   #prepare(): void {
-    const body = this.#body.isPrepared ? null : this.#prepareBody();
-    const all = [
-      body?.catch((error: unknown) => this.#errors.note("physics", error)),
-      this.#prepareSending().catch((error: unknown) => this.#errors.note("storage", error)),
-    ];
-    void Promise.all(all).then(() => {
-      this.#isPrepared = true;
-    });
+    const preparation = new Preparation(nowS());
+    this.#preparation = preparation;
+    const body = this.#body.isPrepared ? Promise.resolve() : this.#prepareBody();
+    void body
+      .catch((error: unknown) => this.#errors.note("physics", error))
+      .then(() => preparation.settled("body"));
+    void this.#prepareSending()
+      .catch((error: unknown) => this.#errors.note("storage", error))
+      .then(() => preparation.settled("sending"));
   }
 
   async #prepareBody(): Promise<void> {
@@ -300,13 +309,35 @@ export class SelfTest {
       if (place === null) void this.#finish(this.#measuring);
       return;
     }
-    if (this.#progress.kind !== "preparing") return;
-    this.#prepareSinceS ??= timeS;
-    const isLate = timeS - this.#prepareSinceS > PREPARED_WITHIN_S;
-    const hasMoved = !this.#body.isPrepared || this.#body.latest !== null;
-    if (!(this.#isPrepared && hasMoved) && !isLate) return;
-    if (isLate && !this.#isPrepared) this.#errors.note("preparation", "it took longer than 30 s");
+    const preparation = this.#preparation;
+    const isBodyDue = preparation.missing.includes("body");
+    if (!isBodyDue && (!this.#body.isPrepared || this.#body.latest !== null)) {
+      preparation.settled("picture");
+    }
+    this.#begin(timeS);
+  }
+
+  #begin(timeS: number): void {
+    const preparation = this.#preparation;
+    if (this.#progress.kind !== "preparing" || !preparation.isOver(nowS())) return;
+    for (const what of preparation.missing) {
+      this.#errors.note("preparation", `not there after 30 s: ${what}`);
+    }
+    this.#measuringSinceS = nowS();
     this.#measuring = new Measurement(timeS, new Date());
+  }
+
+  /** Once a second, whether frames come or not: say how far it is, and wait for nothing for ever. */
+  #look(): void {
+    if (this.#session === null && this.#host === null) return;
+    const measuring = this.#measuring;
+    if (measuring !== null) {
+      const isOverdue = nowS() - this.#measuringSinceS > planDurationS(PLAN) + OVERDUE_S;
+      if (isOverdue) void this.#finish(measuring);
+    } else if (this.#progress.kind === "preparing") {
+      if (this.#preparation.isOver(nowS())) this.#begin(nowS());
+      else this.#become(this.#preparation.progress(nowS()));
+    }
   }
 
   // Afterwards.
@@ -316,7 +347,8 @@ export class SelfTest {
     const { durationS, startS } = measuring;
     if (durationS < LEAST_DURATION_S) {
       this.#sending?.close();
-      this.#become({ kind: "short" });
+      const hadTime = nowS() - this.#measuringSinceS >= LEAST_DURATION_S;
+      this.#become({ kind: hadTime ? "unseen" : "short" });
       return;
     }
     this.#world.sounds.play("complete");
@@ -357,10 +389,8 @@ export class SelfTest {
   /** Measure once more, with what is loaded already and a new socket. */
   #repeat(): void {
     this.#errors.forget();
-    this.#prepareSinceS = null;
-    this.#isPrepared = false;
-    this.#become({ kind: "preparing" });
     this.#prepare();
+    this.#become(this.#preparation.progress(nowS()));
   }
 
   #left(): void {

@@ -29,6 +29,7 @@ import { loadModel, requestAvatars } from "./avatars";
 import { Headset } from "./headset";
 import { drawIn, FRAME_RATE_HZ, requestImmersive } from "./immersive";
 import type { Granted, Inspection } from "./inspection";
+import { Pace } from "./pace";
 import { deskOf } from "./panels/desk";
 import { VisitPanels } from "./panels/visitPanels";
 import { WorldScenery } from "./scenery";
@@ -151,9 +152,13 @@ export class Vr {
   }
 
   /** Show the study on this screen instead of in VR, moved by a source of its own. */
-  showOnScreen(host: HTMLElement, source: TrackingSource): void {
+  showOnScreen(
+    host: HTMLElement,
+    source: TrackingSource,
+    onPace: (slowHz: number | null) => void = () => undefined,
+  ): void {
     this.#world.sounds.resume();
-    const screen = { host, source: new Watched(source) };
+    const screen = { host, source: new Watched(source), pace: new Pace(), onPace };
     this.#screen = screen;
     this.#headset.trackBy(screen.source);
     host.append(this.#renderer.domElement);
@@ -199,7 +204,8 @@ export class Vr {
     this.#panels.guard(this.#boundary.corners(frame, room.space), isNew);
   }
 
-  #frameOnScreen(timeMs: number, { host, source }: OnScreen): void {
+  #frameOnScreen(timeMs: number, { host, source, pace, onPace }: OnScreen): void {
+    onPace(pace.note(timeMs / 1000));
     const { clientWidth: width, clientHeight: height } = host;
     const canvas = this.#renderer.domElement;
     const ratio = window.devicePixelRatio;
@@ -211,6 +217,8 @@ export class Vr {
       this.#renderer.setSize(width, height);
       this.#camera.aspect = width / Math.max(1, height);
       this.#camera.updateProjectionMatrix();
+      const halfHeight = Math.tan((this.#camera.fov * Math.PI) / 360);
+      this.#panels.fitWindow(Math.atan(this.#camera.aspect * halfHeight));
     }
     this.#headset.frame(timeMs / 1000, null);
     this.#frames++;
@@ -357,6 +365,9 @@ function openRoad(token: string, phase: Omit<RoadLinkOptions, "url" | "token">):
 interface OnScreen {
   readonly host: HTMLElement;
   readonly source: Watched;
+  readonly pace: Pace;
+  /** Called with every frame: the pictures a second if they are too few, else null. */
+  readonly onPace: (slowHz: number | null) => void;
 }
 
 /** A source whose newest frame the camera also follows. */

@@ -28,8 +28,8 @@ interface Environment {
   readonly wallClockMs: () => number;
   readonly makeSocket: MakeSocket;
   readonly onStatus: (status: Status) => void;
-  /** Called after everything else has ended. */
-  readonly onClosed: () => Promise<void>;
+  /** Called after everything else has ended, with the reason if there is one. */
+  readonly onClosed: (failure: Failure | null) => Promise<void>;
 }
 
 export class DirectClient extends ClientEvents implements TelemetryClient {
@@ -142,7 +142,7 @@ export class DirectClient extends ClientEvents implements TelemetryClient {
     await this.#running;
     await this.#journal.flush();
     this.#journal.close();
-    await this.#ground.onClosed();
+    await this.#ground.onClosed(this.#connection.failure);
   }
 
   get #failure(): Failure | null {

@@ -55,8 +55,10 @@ async function started(options: TelemetryOptions, around: Surroundings): Promise
       wallClockMs: () => performance.timeOrigin + performance.now(),
       makeSocket: (url, protocols) => new WebSocket(url, protocols),
       onStatus: around.onStatus ?? (() => undefined),
-      onClosed: async () => {
-        if (journal.messages === 0) await deleteJournal(storageKey);
+      onClosed: async (failure) => {
+        // Of somebody who has withdrawn nothing is kept, and the server takes nothing.
+        const isOver = journal.messages === 0 || failure?.code === "withdrawn";
+        if (isOver) await deleteJournal(storageKey);
         release();
       },
     });
@@ -69,8 +71,8 @@ async function started(options: TelemetryOptions, around: Surroundings): Promise
 const inUse = (storageKey: string): TelemetryError =>
   new TelemetryError({
     code: "journal_in_use",
-    message: `another page has the journal ${storageKey} open`,
-    remedy: "Close the other page; two headsets in one browser need two storageKeys.",
+    message: `another page has the journal of session ${storageKey} open`,
+    remedy: "Close the other page, and reload this one.",
   });
 
 // One page at a time may use a journal; the browser releases the lock of a page that dies.

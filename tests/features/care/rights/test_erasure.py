@@ -186,8 +186,13 @@ def test_no_data_can_be_added_after_an_erasure(site: Site) -> None:
     assert site.operator.post(path, json=body).status_code in (404, 409, 422)
     join = {"kind": "people", "participant_code": view["participant_code"]}
     error(site.operator.post(f"/api/studies/{STUDY}/sessions", json=join), 409, "conflict")
+    # The device is told why, so that it deletes what it still has.
     with site.socket(visit.headset_token) as socket:
-        assert json.loads(socket.recv(timeout=10.0))["code"] == "not_signed_in"
+        refusal = json.loads(socket.recv(timeout=10.0))
+    assert (refusal["code"], "erased" in refusal["message"]) == ("withdrawn", True)
+    with site.server.client() as headset:
+        bearer = {"authorization": f"Bearer {visit.headset_token}"}
+        error(headset.get("/api/vr/form", headers=bearer), 410, "withdrawn")
     assert in_tables(visit, site.database.engine) == {}
 
 
@@ -216,7 +221,7 @@ def test_a_completed_session_accepts_no_data_after_an_erasure(site: Site) -> Non
     visit = Visit(session_id, participant_of(site, session_id)["id"], mine("done"), token)
     with site.headset(token) as headset:
         erase(site, visit, "retention")
-        assert headset.hear("error")["code"] in ("not_signed_in", "withdrawn")
+        assert headset.hear("error")["code"] == "withdrawn"
     assert site.view(session_id)["status"] == "completed"
     assert in_tables(visit, site.database.engine) == {}
 

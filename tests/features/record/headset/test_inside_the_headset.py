@@ -186,18 +186,35 @@ def test_a_calibration_that_measured_nobody_is_refused(site: Site) -> None:
     """Lengths of nobody, and what is no rotation, are stored as refused and shown nowhere."""
     session_id = site.join()
     pose = {"position_m": [0.0, 0.1, 0.0], "rotation": [0.0, 0.0, 0.0, 0.0]}
+    far = {"position_m": [9.0, 9.0, 9.0], "rotation": [1.0, 0.0, 0.0, 0.0]}
     impossible: list[Json] = [
         {"span_m": 9.0},
         {"eye_height_m": 0.0},
         {"tracker_from_goal": {"Head": pose}},
+        {"eye_height_m": 2.5},
+        {"eye_height_m": 0.4},
+        {"segments_m": {"nose": 1.0}},
+        {"segments_m": {"thigh": 9.0}},
+        {"segments_m": {"upper_arm": 0.0}},
+        {"residuals_m": {"Head": 9.0}},
+        {"tracker_from_goal": {"Head": far}},
     ]
     with site.headset(site.token(session_id), **ABLE) as headset:
         for one in impossible:
             headset.reported(**{**CALIBRATION, **one})
         assert site.view(session_id)["calibration"] is None
-        headset.reported(**{**CALIBRATION, "stature_m": 0.5})
+        headset.reported(**{**CALIBRATION, "stature_m": 0.5, "eye_height_m": 0.46})
     assert [one.split()[0].partition(".")[0] for one in refusals(site, session_id)] == [
-        *("span_m", "eye_height_m", "tracker_from_goal"),
+        *(
+            "span_m",
+            "eye_height_m",
+            "tracker_from_goal",
+            "eyes",
+            "eyes",
+            "segments_m",
+            "segments_m",
+        ),
+        *("segments_m", "residuals_m", "tracker_from_goal"),
     ]
     assert site.view(session_id)["calibration"]["stature_m"] == 0.5
 

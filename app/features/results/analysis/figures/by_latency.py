@@ -25,7 +25,7 @@ _STYLES = {"hand": (BLUE, "circle", "solid"), "foot": (VERMILLION, "square", "da
 MEANS = (
     "Thin lines are participants; the thick line is their mean with its 95 % confidence interval "
     "(t distribution). The shape beside it is the distribution of 5 or more participants; n "
-    "is below each latency."
+    "is beside each panel's title, or below each latency where it differs."
 )
 MIN_FOR_A_SHAPE = 5
 MANY = 60
@@ -118,14 +118,22 @@ def latency_figure(
             figure.add_trace(trace, row=1, col=column)
         figure.add_trace(_means(own, limb, unit, across), row=1, col=column)
         counts = own.groupby("x")["value"].count()
+        numbers = [int(counts.get(place, 0)) for place in places]
+        alike = len(set(numbers)) == 1
         figure.update_xaxes(
             title_text=across.title,
             ticktext=[
-                f"{across.tick(place)}<br>n = {int(counts.get(place, 0))}" for place in places
+                across.tick(place) if alike else f"{across.tick(place)}<br>n = {n}"
+                for place, n in zip(places, numbers, strict=True)
             ],
             row=1,
             col=column,
         )
+        if alike:
+            figure.layout.annotations[column - 1].text += f", n = {numbers[0]}"
+    # Panels, lines and shapes are named where they are, and by the caption.
+    figure.update_layout(showlegend=False)
+    figure.update_xaxes(title_font_size=13, tickangle=0)
     figure.update_yaxes(title_text=axis, row=1, col=1)
     if limits is not None:
         room = 0.05 * (limits[1] - limits[0])
@@ -232,6 +240,8 @@ def _place_words(across: Across) -> str:
 def _means(own: pd.DataFrame, limb: str, unit: str, across: Across) -> go.Scatter:
     colour, symbol, dash = _STYLES[limb]
     means = cells(own, "x")
+    *_, before, last = (0.0, *(cell.mean for cell in means.values()))
+    rises = last >= before
     return go.Scatter(
         x=list(means),
         y=[cell.mean for cell in means.values()],
@@ -243,7 +253,12 @@ def _means(own: pd.DataFrame, limb: str, unit: str, across: Across) -> go.Scatte
             "width": 6,
         },
         customdata=[[cell.n, cell.words(unit)] for cell in means.values()],
-        mode="markers" if across.names else "lines+markers",
+        mode="markers" if across.names else "lines+markers+text",
+        text=[*("" for _ in range(len(means) - 1)), "mean"],
+        # Where the line does not come from.
+        textposition="top left" if rises else "bottom left",
+        textfont={"color": colour, "size": 12},
+        cliponaxis=False,
         name=f"mean, {limb}",
         line={"color": colour, "width": 3, "dash": dash},
         marker={"color": colour, "size": 10, "symbol": symbol},

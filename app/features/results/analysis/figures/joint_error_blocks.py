@@ -17,7 +17,12 @@ from app.features.results.analysis.figures.joint_errors import (
     error_definition,
     task_angles,
 )
-from app.features.results.analysis.figures.theme import COLOURS, latency_line
+from app.features.results.analysis.figures.theme import (
+    COLOURS,
+    LineEnd,
+    label_line_ends,
+    latency_line,
+)
 
 KEY, TITLE = "joint_error_blocks", "Joint error over the blocks of a session"
 HOW = (
@@ -61,12 +66,36 @@ def _figure(data: pd.DataFrame) -> go.Figure:
             shift = _APART * (place - 0.5 * (len(latencies) - 1))
             trace = _trace(own, latency, place, shift)
             figure.add_trace(trace.update(showlegend=column == 1), row=1, col=column)
+        label_line_ends(
+            figure,
+            _ends(data[data["limb"] == limb], latencies),
+            top=float(data["mean_deg"].max()),
+            column=column,
+        )
+    blocks = sorted(data["block"].unique().tolist())
+    # The lines are labelled at their ends, to the right of which is room for it.
+    figure.update_layout(showlegend=False)
     figure.update_xaxes(
-        title_text="block (1 = first)", tickvals=sorted(data["block"].unique().tolist())
+        title_text="block (1 = first)",
+        tickvals=blocks,
+        range=[blocks[0] - 0.3, blocks[-1] + 0.3 + 0.2 * (len(blocks) - 1)],
     )
     figure.update_yaxes(rangemode="tozero")
     figure.update_yaxes(title_text="mean joint error (deg)", row=1, col=1)
     return figure
+
+
+def _ends(own: pd.DataFrame, latencies: list[float]) -> list[LineEnd]:
+    """Return the ends of the lines, all at the last block, so that their labels are in a column."""
+    ends = []
+    for place, latency in enumerate(latencies):
+        line = own[own["latency_ms"] == latency].sort_values("block")
+        if line.empty:
+            continue
+        x = float(line["block"].iloc[-1]) + 0.5 * _APART * len(latencies)
+        y = float(line["mean_deg"].iloc[-1])
+        ends.append(LineEnd(x, y, f"{latency:g} ms", COLOURS[place % len(COLOURS)]))
+    return ends
 
 
 def _trace(own: pd.DataFrame, latency: float, place: int, shift: float) -> go.Scatter:

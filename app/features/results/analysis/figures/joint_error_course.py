@@ -1,5 +1,7 @@
 """The figure of the mean joint error over the active time of a phase."""
 
+from collections.abc import Sequence
+
 import pandas as pd
 import plotly.graph_objects as go
 
@@ -15,6 +17,8 @@ from app.features.results.analysis.figures.drawing import (
 from app.features.results.analysis.figures.joint_errors import HINGES
 from app.features.results.analysis.figures.theme import (
     COLOURS,
+    LineEnd,
+    label_line_ends,
     latency_line,
     see_through,
 )
@@ -32,6 +36,8 @@ BANDS = (
     "Lines are means over participants, bands their 95 % confidence intervals (t distribution), "
     "computed for each step."
 )
+ROOM = 1.18
+"""The x axis ends so much later than the lines, for their labels."""
 _KEYS = ["limb", "latency_ms", "begin_active_s", "end_active_s"]
 _NAMES = (*_KEYS, "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
 
@@ -82,12 +88,30 @@ def _figure(data: pd.DataFrame) -> go.Figure:
         for place, (latency, own) in enumerate(zip(latencies, owns, strict=True)):
             line = _line(own, latency, place).update(showlegend=column == 1)
             figure.add_trace(line, row=1, col=column)
+        label_line_ends(
+            figure, _ends(latencies, owns), top=float(data["mean_deg"].max()), column=column
+        )
+    # The lines are labelled at their ends, to the right of which is room for it.
+    figure.update_layout(showlegend=False)
     figure.update_xaxes(
-        title_text="active time (s)", range=[0.0, float(data["end_active_s"].max())]
+        title_text="active time (s)", range=[0.0, ROOM * float(data["end_active_s"].max())]
     )
     figure.update_yaxes(rangemode="tozero")
     figure.update_yaxes(title_text="mean joint error (deg)", row=1, col=1)
     return figure
+
+
+def _ends(latencies: Sequence[float], owns: Sequence[pd.DataFrame]) -> list[LineEnd]:
+    return [
+        LineEnd(
+            _middles(own)[-1],
+            float(own["mean_deg"].iloc[-1]),
+            f"{latency:g} ms",
+            COLOURS[place % len(COLOURS)],
+        )
+        for place, (latency, own) in enumerate(zip(latencies, owns, strict=True))
+        if not own.empty
+    ]
 
 
 def _band(own: pd.DataFrame, latency: float, place: int) -> go.Scatter:

@@ -5,6 +5,9 @@ light background. Whatever a colour shows is also shown by a shape, a dash or a 
 """
 
 import copy
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import plotly.graph_objects as go
@@ -89,6 +92,46 @@ def latency_line(latency_ms: float, place: int, *, size_px: int) -> dict[str, ob
         "line": {"color": colour, "width": 2, "dash": DASHES[place % len(DASHES)]},
         "marker": {"color": colour, "size": size_px, "symbol": SYMBOLS[place % len(SYMBOLS)]},
     }
+
+
+@dataclass(frozen=True)
+class LineEnd:
+    """The last point of a line, its label and its colour."""
+
+    x: float
+    y: float
+    text: str
+    colour: str
+
+
+PLOT_PX = 240.0
+"""About the height of a plot, to tell which labels would cover each other."""
+LABEL_PX = 15.0
+
+
+def label_line_ends(figure: go.Figure, ends: Sequence[LineEnd], *, top: float, column: int) -> None:
+    """Write each line's name at its right end instead of in a legend.
+
+    `top`: the highest value of the panel, whose axis begins at 0. Labels that would cover each
+    other are moved apart, and stay in the order of their lines.
+    """
+    below_px = -math.inf
+    for end in sorted(ends, key=lambda one: one.y):
+        own_px = PLOT_PX * end.y / top if top > 0.0 else 0.0
+        at_px = max(own_px, below_px + LABEL_PX)
+        below_px = at_px
+        figure.add_annotation(
+            x=end.x,
+            y=end.y,
+            text=end.text,
+            showarrow=False,
+            xanchor="left",
+            xshift=7,
+            yshift=at_px - own_px,
+            font={"color": end.colour, "size": 12},
+            row=1,
+            col=column,
+        )
 
 
 def latency_axis(figure: go.Figure, latencies_ms: list[float]) -> None:

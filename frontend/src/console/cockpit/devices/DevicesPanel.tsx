@@ -16,6 +16,7 @@ import { ConnectionMark } from "../ConnectionMark";
 import classes from "../Panels.module.css";
 import { isBusy } from "../session/keys";
 import { PairingDialog } from "./PairingDialog";
+import { type Doing, doing } from "./words";
 
 const KINDS: readonly Device[] = ["tablet", "headset"];
 /** Keys for pairing, whose buttons are far down the page for keyboard users. */
@@ -45,6 +46,7 @@ export function DevicesPanel({ session }: { readonly session: SessionView }): JS
             key={device.id}
             sessionId={session.id}
             device={device}
+            says={device.connected ? doing(session, kind) : null}
             canAct={
               kind === "headset" &&
               device.self_test === null &&
@@ -124,12 +126,14 @@ function usePairKeys(pair: (kind: Device) => void): void {
 interface PairedProps {
   readonly sessionId: string;
   readonly device: PairedDevice;
+  /** What the person at it is doing; null if that is not known. */
+  readonly says: Doing | null;
   /** Whether this screen may take its place: not that of a headset that somebody may wear. */
   readonly canAct: boolean;
   readonly onPair: () => void;
 }
 
-function Paired({ sessionId, device, canAct, onPair }: PairedProps): JSX.Element {
+function Paired({ sessionId, device, says, canAct, onPair }: PairedProps): JSX.Element {
   const { t, language } = useTexts();
   const now = useSlowClock();
   const revoke = useMutation({ mutationFn: () => sessions.revoke(sessionId, device.id) });
@@ -148,6 +152,7 @@ function Paired({ sessionId, device, canAct, onPair }: PairedProps): JSX.Element
           <div className={`${classes.deviceState} ${device.connected ? "" : classes.lost}`}>
             <ConnectionMark connected={device.connected} />
             {device.connected ? t("device.connected") : t("device.lost")}
+            {says !== null && ` · ${t(`device.says.${says}`)}`}
             {!device.connected && lastSeen !== null && ` · ${lastSeen}`}
           </div>
         )}

@@ -129,6 +129,10 @@ function State({ session, live }: { readonly session: SessionView; readonly live
       </div>
     );
   }
+  // The page says why beside it, and offers to reload.
+  if (drawingState === "unloaded") {
+    return <Message text={t("live3d.unloaded")} remedy={t("live3d.unloaded.remedy")} warns />;
+  }
   if (drawingState === "loading" || (setup === null && feed !== "lost")) {
     return (
       <div className={classes.state}>

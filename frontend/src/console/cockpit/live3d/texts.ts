@@ -16,6 +16,8 @@ export const liveEn = {
   "live3d.flat": "This browser cannot show 3-D",
   "live3d.flat.remedy":
     "Turn on hardware acceleration, or use another browser. Everything else works without it.",
+  "live3d.unloaded": "The live view could not be loaded",
+  "live3d.unloaded.remedy": "The session goes on without it, and is recorded.",
   "live3d.before": "Movement is shown once the avatar appears.",
   "live3d.none": "No movement is arriving",
   "live3d.none.remedy": "Check that the headset is on and its program is running.",
@@ -62,6 +64,8 @@ export const liveDe: Readonly<Record<keyof typeof liveEn, string>> = {
   "live3d.flat": "Dieser Browser kann kein 3-D anzeigen",
   "live3d.flat.remedy":
     "Schalten Sie die Hardwarebeschleunigung ein oder nehmen Sie einen anderen Browser. Alles andere funktioniert auch ohne 3-D.",
+  "live3d.unloaded": "Die Live-Ansicht konnte nicht geladen werden",
+  "live3d.unloaded.remedy": "Die Sitzung läuft ohne sie weiter und wird aufgezeichnet.",
   "live3d.before": "Bewegung ist zu sehen, sobald der Avatar erscheint.",
   "live3d.none": "Es kommt keine Bewegung an",
   "live3d.none.remedy": "Prüfen Sie, ob das Headset eingeschaltet ist und sein Programm läuft.",

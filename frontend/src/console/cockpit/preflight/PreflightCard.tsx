@@ -53,7 +53,9 @@ export function PreflightBody({ session, flight, title }: PreflightBodyProps): J
         </Button>
       </div>
       {data === undefined && error === null && (
-        <Loader size="sm" type="dots" role="status" aria-label={t("preflight.loading")} />
+        <div className={classes.loading}>
+          <Loader size="sm" type="dots" role="status" aria-label={t("preflight.loading")} />
+        </div>
       )}
       {error !== null && <Failure error={error} onRetry={() => void refetch()} />}
       {data !== undefined && (

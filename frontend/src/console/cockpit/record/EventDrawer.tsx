@@ -5,8 +5,9 @@ import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { changeWords } from "../../avatarChanges/words";
-import { useTexts } from "../../i18n";
+import { type Key, useTexts } from "../../i18n";
 import { eventsQuery } from "../../queries";
+import { stepName } from "../../steps";
 import { Loaded } from "../../ui/Loaded";
 import { RecordDrawer } from "../../ui/RecordDrawer";
 import classes from "../Panels.module.css";
@@ -28,11 +29,22 @@ export function EventDrawer({ session, opened, onClose }: EventDrawerProps): JSX
 
 function Events({ session }: { readonly session: SessionView }): JSX.Element {
   const query = useQuery(eventsQuery(session.id, session.version));
-  return <Loaded query={query}>{(events) => <EventTable events={events} />}</Loaded>;
+  return (
+    <Loaded query={query}>{(events) => <EventTable events={events} session={session} />}</Loaded>
+  );
 }
 
-function EventTable({ events }: { readonly events: readonly SessionEvent[] }): JSX.Element {
+interface EventTableProps {
+  readonly events: readonly SessionEvent[];
+  readonly session: SessionView;
+}
+
+function EventTable({ events, session }: EventTableProps): JSX.Element {
   const { t, language } = useTexts();
+  const stepWords = (index: number): string => {
+    const step = session.steps[index];
+    return step === undefined ? String(index + 1) : `${index + 1}, ${t(stepName(step))}`;
+  };
   return (
     <>
       {events.some(({ hash }) => hash === null) && (
@@ -55,10 +67,8 @@ function EventTable({ events }: { readonly events: readonly SessionEvent[] }): J
               <td>{event.seq}</td>
               <td className={classes.nowrap}>{timeOfDay(event.at, language)}</td>
               <td>
-                {event.type === "blinding_lifted"
-                  ? t("log.blinding_lifted")
-                  : event.type.replaceAll("_", " ")}
-                <div className={classes.empty}>{detailsOf(event)}</div>
+                {nameOf(event, t)}
+                <div className={classes.empty}>{detailsOf(event, stepWords)}</div>
                 {event.type === "avatar_changed" && <Changed event={event} />}
               </td>
               <td className={classes.nowrap}>{actorName(event.by)}</td>
@@ -68,6 +78,13 @@ function EventTable({ events }: { readonly events: readonly SessionEvent[] }): J
       </table>
     </>
   );
+}
+
+/** An event's name; one of a newer server, which this page does not know, is named as stored. */
+function nameOf({ type }: SessionEvent, t: ReturnType<typeof useTexts>["t"]): string {
+  const key = `event.${type}`;
+  const name = t(key as Key);
+  return name === key ? type.replaceAll("_", " ") : name;
 }
 
 function Changed({ event }: { readonly event: SessionEvent }): JSX.Element {
@@ -85,10 +102,14 @@ function Changed({ event }: { readonly event: SessionEvent }): JSX.Element {
 /** Identifiers and hashes are for the export, so they are not shown here. */
 const MACHINE = /(_id|_hash|^by|hash)$/;
 
-const detailsOf = (event: SessionEvent): string =>
+const detailsOf = (event: SessionEvent, stepWords: (index: number) => string): string =>
   Object.entries(event.data)
     .filter(([name, value]) => value !== null && typeof value !== "object" && !MACHINE.test(name))
-    .map(([name, value]) => `${wordOf(name)} ${readable(name, value)}`)
+    .map(([name, value]) =>
+      name === "step" && typeof value === "number"
+        ? `step ${stepWords(value)}`
+        : `${wordOf(name)} ${readable(name, value)}`,
+    )
     .join(" · ");
 
 /** A unit at the end of a name. */
@@ -102,10 +123,9 @@ const wordOf = (name: string): string => {
   return bare === "client_t" ? "headset's clock" : bare.replaceAll("_", " ");
 };
 
-/** A value as it is shown: steps counted from 1, at most three decimals, and the unit. */
+/** A value as it is shown: at most three decimals, and the unit. */
 function readable(name: string, value: unknown): string {
   if (typeof value !== "number") return String(value);
-  if (name === "step") return String(value + 1);
   const unit = UNIT.exec(name)?.[1];
   const rounded = String(Math.round(value * 1000) / 1000);
   return unit === undefined ? rounded : `${rounded} ${UNITS[unit] ?? unit}`;

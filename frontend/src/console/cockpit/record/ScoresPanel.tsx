@@ -64,9 +64,8 @@ function Scores({ session, one }: ScoresProps): JSX.Element {
         {one.score_views.map((score) => (
           <div key={score.key} style={{ display: "contents" }}>
             <dt>{score.label}</dt>
-            <dd title={rangeOf(score, language)}>
-              {score.value === null ? t("scores.incomplete") : number(score.value, language)}
-            </dd>
+            <dd>{score.value === null ? t("scores.incomplete") : number(score.value, language)}</dd>
+            <Range score={score} />
           </div>
         ))}
       </dl>
@@ -90,10 +89,31 @@ function whereOf(
   return step.latency_ms === null ? name : `${name} · ${latency(milliseconds(step.latency_ms))}`;
 }
 
-/** `−12 … 12`: the possible values of the score, if the instrument defines them. */
-function rangeOf({ minimum, maximum }: Score, language: string): string | undefined {
-  if (minimum === null || maximum === null) return undefined;
-  return `${number(minimum, language)} … ${number(maximum, language)}`;
+/** The score as a mark between the lowest and the highest possible value, if those are defined. */
+function Range({ score }: { readonly score: Score }): JSX.Element | null {
+  const { t, language } = useTexts();
+  const { minimum, maximum, value } = score;
+  if (minimum === null || maximum === null || maximum <= minimum) return null;
+  const ends = { low: number(minimum, language), high: number(maximum, language) };
+  const share = value === null ? null : (value - minimum) / (maximum - minimum);
+  return (
+    <dd className={classes.range}>
+      <span aria-hidden="true">{ends.low}</span>
+      <span className={classes.rangeLine} title={t("scores.range", ends)}>
+        {minimum < 0 && maximum > 0 && (
+          <span
+            className={classes.rangeZero}
+            style={{ insetInlineStart: `${(-100 * minimum) / (maximum - minimum)}%` }}
+          />
+        )}
+        {share !== null && (
+          <span className={classes.rangeMark} style={{ insetInlineStart: `${100 * share}%` }} />
+        )}
+      </span>
+      <span aria-hidden="true">{ends.high}</span>
+      <span className="visually-hidden">{t("scores.range", ends)}</span>
+    </dd>
+  );
 }
 
 type Hint = AdministrationScores["hints"][number];

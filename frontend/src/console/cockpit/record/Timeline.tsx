@@ -66,7 +66,7 @@ function StepRow({ step, phase }: StepRowProps): JSX.Element {
   const row = useRef<HTMLLIElement>(null);
   const current = step.status === "current";
   useEffect(() => {
-    if (current) row.current?.scrollIntoView({ block: "nearest" });
+    if (current && row.current !== null) showInList(row.current);
   }, [current]);
   return (
     <li
@@ -87,6 +87,15 @@ function StepRow({ step, phase }: StepRowProps): JSX.Element {
       </span>
     </li>
   );
+}
+
+/** Scroll the list, not the page: on a narrow screen the list does not scroll and stands below. */
+function showInList(row: HTMLElement): void {
+  const list = row.closest("nav");
+  if (list === null || list.scrollHeight <= list.clientHeight) return;
+  const [of, inside] = [row.getBoundingClientRect(), list.getBoundingClientRect()];
+  if (of.top < inside.top) list.scrollTop += of.top - inside.top;
+  else if (of.bottom > inside.bottom) list.scrollTop += of.bottom - inside.bottom;
 }
 
 function StepDetails({ step, phase }: StepRowProps): JSX.Element | null {

@@ -8,6 +8,7 @@ import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { changeWords } from "../../avatarChanges/words";
 import { type Key as TextKey, useTexts } from "../../i18n";
+import { usePermissions } from "../../permissions";
 import { isForm, isTimed, stepIcon, stepName } from "../../steps";
 import { Key } from "../../ui/Key";
 import { Shortfalls } from "../../ui/Shortfalls";
@@ -24,6 +25,7 @@ import {
 import type { useSession } from "../session/useSession";
 import classes from "./CurrentStep.module.css";
 import { HeightForm } from "./HeightForm";
+import { NextParticipant } from "./NextParticipant";
 import { Aloud, isAloud } from "./OperatorEntry";
 import { PaperConsent } from "./PaperConsent";
 import { PhaseClock } from "./PhaseClock";
@@ -130,6 +132,8 @@ function StepPosition({ session, step }: { readonly session: SessionView; readon
 
 function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Element | null {
   const { t } = useTexts();
+  const can = usePermissions();
+  if (session.ended_at !== null) return can("run") ? <NextParticipant session={session} /> : null;
   const action = primaryAction(session);
   const step = currentStep(session);
   if (action !== null) {

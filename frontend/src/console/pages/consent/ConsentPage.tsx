@@ -38,7 +38,7 @@ export function ConsentPage({ id }: { readonly id: string }): JSX.Element {
       <Loaded query={useQuery(consentQuery(id))}>
         {(record) =>
           record === null ? (
-            <EmptyState icon="document" title={t("consent.none")}>
+            <EmptyState icon="document" title={t("consent.none")} isPage>
               {t("consent.none.body")}
             </EmptyState>
           ) : (

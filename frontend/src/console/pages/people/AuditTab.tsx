@@ -11,6 +11,7 @@ import { useTexts } from "../../i18n";
 import { auditQuery, peopleQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
+import { ScrollBox } from "../../ui/tables";
 import { actorName, KINDS, sentences } from "./auditWords";
 import classes from "./People.module.css";
 
@@ -121,7 +122,7 @@ function Entries({ entries, more, loading, onMore }: EntriesProps): JSX.Element 
   }
   return (
     <>
-      <div className={classes.frame}>
+      <ScrollBox label={t("audit.kind")} className={classes.frame}>
         <table className={classes.trail}>
           <thead>
             <tr>
@@ -138,7 +139,7 @@ function Entries({ entries, more, loading, onMore }: EntriesProps): JSX.Element 
             ))}
           </tbody>
         </table>
-      </div>
+      </ScrollBox>
       <div className={classes.more}>
         {more ? (
           <Button variant="default" loading={loading} onClick={onMore}>

@@ -10,6 +10,7 @@ import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import { Order, orderKey } from "../../ui/Order";
 import { SlotMark } from "../../ui/SlotMark";
+import { ScrollBox } from "../../ui/tables";
 import classes from "./LedgerTab.module.css";
 import { SlotCell } from "./SlotCell";
 import page from "./StudyPage.module.css";
@@ -80,7 +81,7 @@ function Grid({ grid, ledger }: GridProps): JSX.Element {
   const { rows, columns } = grid;
   const next = nextFree(ledger.slots);
   return (
-    <div className={classes.scroll}>
+    <ScrollBox label={t("ledger.order")} className={classes.scroll}>
       <table className={classes.grid}>
         <thead>
           <tr>
@@ -111,7 +112,7 @@ function Grid({ grid, ledger }: GridProps): JSX.Element {
           ))}
         </tbody>
       </table>
-    </div>
+    </ScrollBox>
   );
 }
 

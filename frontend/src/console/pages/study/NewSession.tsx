@@ -24,11 +24,18 @@ const LONGEST_CODE = 40;
 
 interface NewSessionProps {
   readonly study: StudyDetail;
+  /** The kind that is chosen at first. */
+  readonly firstKind?: Kind;
   readonly opened: boolean;
   readonly onClose: () => void;
 }
 
-export function NewSession({ study, opened, onClose }: NewSessionProps): JSX.Element {
+export function NewSession({
+  study,
+  firstKind = "people",
+  opened,
+  onClose,
+}: NewSessionProps): JSX.Element {
   const { t } = useTexts();
   return (
     <Modal
@@ -37,17 +44,23 @@ export function NewSession({ study, opened, onClose }: NewSessionProps): JSX.Ele
       title={t("join.title")}
       closeButtonProps={{ "aria-label": t("action.close") }}
     >
-      <JoinForm study={study} onClose={onClose} />
+      <JoinForm study={study} firstKind={firstKind} onClose={onClose} />
     </Modal>
   );
 }
 
-function JoinForm({ study, onClose }: Omit<NewSessionProps, "opened">): JSX.Element {
+interface JoinFormProps {
+  readonly study: StudyDetail;
+  readonly firstKind: Kind;
+  readonly onClose: () => void;
+}
+
+function JoinForm({ study, firstKind, onClose }: JoinFormProps): JSX.Element {
   const { t, language: spoken } = useTexts();
   const [, navigate] = useLocation();
   const queries = useQueryClient();
   const [code, setCode] = useState("");
-  const [kind, setKind] = useState<Kind>("people");
+  const [kind, setKind] = useState<Kind>(firstKind);
   const [language, setLanguage] = useState(
     study.languages.includes(spoken) ? spoken : (study.languages[0] ?? "en"),
   );

@@ -1,18 +1,20 @@
 /** Every session of the study, newest first; one click opens it. */
-import { Button, SegmentedControl, Table } from "@mantine/core";
-import type { Kind, SessionSummary, StudyDetail } from "@shared/api/types";
+import { Button, SegmentedControl, Select, Table, TextInput } from "@mantine/core";
+import type { Kind, SessionStatus, SessionSummary, StudyDetail } from "@shared/api/types";
 import { dateTime, duration } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { seconds } from "@shared/units";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { Link, useLocation } from "wouter";
+import { Link, useLocation, useSearch } from "wouter";
 import { useTexts } from "../../i18n";
 import { usePermissions } from "../../permissions";
 import { sessionsQuery } from "../../queries";
+import { stepName } from "../../steps";
 import { ActOnScreen } from "../../tour/ActOnScreen";
 import { TryIt } from "../../tour/TryIt";
-import { KindBadge, StatusBadge } from "../../ui/badges";
+import { KindBadge, STATUSES, StatusBadge } from "../../ui/badges";
+import { useOwnSearch } from "../../ui/chosenKind";
 import { EmptyState } from "../../ui/EmptyState";
 import { KINDS } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
@@ -24,22 +26,54 @@ import page from "./StudyPage.module.css";
 export function SessionsTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
   const can = usePermissions();
-  const [kind, setKind] = useState<Kind | "all">("all");
+  const { chosen, choose } = useChoice();
   const [joining, setJoining] = useState(false);
   return (
     <>
       <div className={page.toolbar}>
         <SegmentedControl
           aria-label={t("kind.label")}
-          value={kind}
-          onChange={(value) => setKind(value as Kind | "all")}
+          value={chosen.kind}
+          onChange={(value) => choose({ kind: value as Kind | "all" })}
           data={(["all", ...KINDS] as const).map((value) => ({ value, label: t(`kind.${value}`) }))}
+        />
+        <TextInput
+          type="search"
+          aria-label={t("rights.search")}
+          placeholder={t("rights.search")}
+          w={220}
+          value={chosen.code}
+          onChange={(event) => choose({ code: event.currentTarget.value })}
+        />
+        <Select
+          aria-label={t("sessions.status")}
+          placeholder={t("sessions.anyStatus")}
+          w={170}
+          value={chosen.status}
+          onChange={(value) => choose({ status: value as SessionStatus | null })}
+          data={STATUSES.map((value) => ({ value, label: t(`status.${value}`) }))}
+          clearable
         />
       </div>
       <Loaded query={useQuery({ ...sessionsQuery(study.key), refetchInterval: 15_000 })}>
         {(sessions) => {
-          const shown = sessions.filter((session) => kind === "all" || session.kind === kind);
+          const shown = sessions.filter(isChosen(chosen));
           if (shown.length > 0) return <SessionTable sessions={shown} />;
+          if (sessions.length > 0) {
+            return (
+              <EmptyState
+                icon="search"
+                title={t("sessions.noMatch")}
+                action={
+                  <Button variant="default" onClick={() => choose(EVERYTHING)}>
+                    {t("sessions.showAll")}
+                  </Button>
+                }
+              >
+                {t("sessions.noMatch.body", { count: sessions.length })}
+              </EmptyState>
+            );
+          }
           return (
             <EmptyState
               icon="people"
@@ -67,6 +101,46 @@ export function SessionsTab({ study }: { readonly study: StudyDetail }): JSX.Ele
       <NewSession study={study} opened={joining} onClose={() => setJoining(false)} />
     </>
   );
+}
+
+interface Choice {
+  readonly kind: Kind | "all";
+  readonly status: SessionStatus | null;
+  /** A part of the participant's code. */
+  readonly code: string;
+}
+
+const EVERYTHING: Choice = { kind: "all", status: null, code: "" };
+
+const isChosen =
+  ({ kind, status, code }: Choice) =>
+  (session: SessionSummary): boolean =>
+    (kind === "all" || session.kind === kind) &&
+    (status === null || session.status === status) &&
+    session.participant_code.toLowerCase().includes(code.trim().toLowerCase());
+
+/** What is listed, kept in the page's address, so that a link and a reload show the same rows. */
+function useChoice(): { readonly chosen: Choice; choose: (part: Partial<Choice>) => void } {
+  const [place, navigate] = useLocation();
+  const search = new URLSearchParams(useSearch());
+  useOwnSearch();
+  const chosen: Choice = {
+    kind: KINDS.find((kind) => kind === search.get("kind")) ?? "all",
+    status: STATUSES.find((status) => status === search.get("status")) ?? null,
+    code: search.get("code") ?? "",
+  };
+  const choose = (part: Partial<Choice>) => {
+    const { kind, status, code } = { ...chosen, ...part };
+    const next = new URLSearchParams({
+      // Also the usual kind: without any search, the router would keep the one before.
+      kind,
+      ...(status === null ? {} : { status }),
+      ...(code === "" ? {} : { code }),
+    });
+    // Replace the address: going back leaves the page instead of undoing a choice.
+    navigate(`${place}?${next}`, { replace: true });
+  };
+  return { chosen, choose };
 }
 
 const COLUMNS = ["participant", "status", "kind", "order", "started", "duration"] as const;
@@ -110,6 +184,13 @@ function Row({ session }: { readonly session: SessionSummary }): JSX.Element {
       </Table.Td>
       <Table.Td>
         <StatusBadge status={session.status} />
+        {session.step != null && (
+          <span className={classes.sub}>
+            {t("sessions.step", { number: session.step.index + 1, total: session.step.steps })}{" "}
+            {t(stepName(session.step))}
+            {session.step.paused && ` · ${t("device.says.paused")}`}
+          </span>
+        )}
         {(session.shortfalls?.length ?? 0) > 0 && (
           <span className={classes.sub}>{t("validity.notValid")}</span>
         )}
@@ -124,7 +205,7 @@ function Row({ session }: { readonly session: SessionSummary }): JSX.Element {
           <Order sequence={session.sequence} bodies={session.bodies} />
         )}
       </Table.Td>
-      <Table.Td>
+      <Table.Td className={classes.when ?? ""}>
         {session.started_at === null
           ? t("sessions.notStarted")
           : dateTime(session.started_at, language)}

@@ -6,6 +6,7 @@ import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect } from "react";
+import { useSearch } from "wouter";
 import { useTexts } from "../../i18n";
 import { statisticsQuery } from "../../queries";
 import { useKind } from "../../ui/chosenKind";
@@ -42,6 +43,7 @@ function Answers({ found }: { readonly found: Statistics }): JSX.Element {
   const { t } = useTexts();
   const alpha = found.alpha.toString();
   useOpenInPrint();
+  useOpenFromAddress();
   return (
     <>
       {found.simulated && (
@@ -92,6 +94,9 @@ function Answers({ found }: { readonly found: Statistics }): JSX.Element {
   );
 }
 
+/** What names a measure in the address. */
+export const MEASURE = "measure";
+
 const idOf = (key: string): string => `measure-${key}`;
 
 const apaLines = ({ results }: Measure): readonly string[] =>
@@ -104,6 +109,14 @@ function open(key: string): void {
   card.open = true;
   card.scrollIntoView();
   card.querySelector("summary")?.focus({ preventScroll: true });
+}
+
+/** A link to one measure, as the summary has for each: its card is open when the page is. */
+function useOpenFromAddress(): void {
+  const measure = new URLSearchParams(useSearch()).get(MEASURE);
+  useEffect(() => {
+    if (measure !== null) open(measure);
+  }, [measure]);
 }
 
 function setEvery(opened: boolean): void {

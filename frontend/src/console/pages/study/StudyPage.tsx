@@ -6,36 +6,58 @@ import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import { type ComponentType, type JSX, lazy, Suspense, useState } from "react";
 import { Link } from "wouter";
 import { useAccount } from "../../account";
 import { Failure } from "../../errors";
 import { isAllowed, SECTIONS, type SectionName } from "../../frame/places";
 import { useTexts } from "../../i18n";
 import { usePermissions } from "../../permissions";
-import { PreregistrationTab } from "../../preregistration/PreregistrationTab";
 import { studyQuery } from "../../queries";
-import { Loaded } from "../../ui/Loaded";
+import { Loaded, Waiting } from "../../ui/Loaded";
 import { useTitle } from "../../ui/page";
 import { NoPermission } from "../NoPermission";
-import { DashboardTab } from "./DashboardTab";
-import { ExportTab } from "./ExportTab";
 import { LedgerTab } from "./LedgerTab";
 import { NewSession } from "./NewSession";
 import { Overview } from "./Overview";
-import { ProtocolTab } from "./ProtocolTab";
-import { ParticipantsTab } from "./participants/ParticipantsTab";
 import { SessionsTab } from "./SessionsTab";
-import { StatisticsTab } from "./StatisticsTab";
 import classes from "./StudyPage.module.css";
-import { SuggestionsTab } from "./SuggestionsTab";
-import { VersionsTab } from "./VersionsTab";
 
-const CONTENT: Readonly<Record<SectionName, (props: { study: StudyDetail }) => JSX.Element>> = {
+// Loaded when they are opened, as results are read by fewer people than run sessions.
+const PreregistrationTab = lazy(async () => ({
+  default: (await import("../../preregistration/PreregistrationTab")).PreregistrationTab,
+}));
+const DashboardTab = lazy(async () => ({
+  default: (await import("./DashboardTab")).DashboardTab,
+}));
+const ExportTab = lazy(async () => ({
+  default: (await import("./ExportTab")).ExportTab,
+}));
+const ProtocolTab = lazy(async () => ({
+  default: (await import("./ProtocolTab")).ProtocolTab,
+}));
+const ParticipantsTab = lazy(async () => ({
+  default: (await import("./participants/ParticipantsTab")).ParticipantsTab,
+}));
+const StatisticsTab = lazy(async () => ({
+  default: (await import("./StatisticsTab")).StatisticsTab,
+}));
+const SuggestionsTab = lazy(async () => ({
+  default: (await import("./SuggestionsTab")).SuggestionsTab,
+}));
+const SummaryTab = lazy(async () => ({
+  default: (await import("./SummaryTab")).SummaryTab,
+}));
+const VersionsTab = lazy(async () => ({
+  default: (await import("./VersionsTab")).VersionsTab,
+}));
+
+const CONTENT: Readonly<Record<SectionName, ComponentType<{ readonly study: StudyDetail }>>> = {
   overview: Overview,
   ledger: LedgerTab,
   sessions: SessionsTab,
   participants: ParticipantsTab,
+  summary: SummaryTab,
   dashboard: DashboardTab,
   statistics: StatisticsTab,
   preregistration: PreregistrationTab,
@@ -79,7 +101,9 @@ function Study({ study, section }: StudyProps): JSX.Element {
     <>
       <Head study={study} section={section} />
       {study.archived_at !== null && <Archived studyKey={study.key} />}
-      <Content study={study} />
+      <Suspense fallback={<Waiting />}>
+        <Content study={study} />
+      </Suspense>
     </>
   );
 }

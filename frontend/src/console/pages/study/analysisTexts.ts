@@ -53,6 +53,25 @@ export const analysisEn = {
   "statistics.collapse": "Close all",
   "glance.effect": "Effect of {{contrast}}, standard deviations",
   "glance.difference": "Mean difference [95 % interval]",
+  "study.tab.summary": "Summary",
+  "summary.lead":
+    "The state of the study on one page, to hand on or to print. Its address opens it for everybody with an account here who may compare conditions.",
+  "summary.link": "Copy link",
+  "summary.linked": "Link copied",
+  "summary.print": "Print",
+  "summary.asOf": "data as of {{when}}",
+  "summary.test": "Main test",
+  "summary.test.none":
+    "The study declared no primary test before its first session, so every result here is exploratory.",
+  "summary.figures": "Figures",
+  "summary.more": "All figures",
+  "summary.excluded": "Who is left out",
+  "summary.level": "α = {{alpha}}, {{study}}, version {{version}}",
+  "summary.none": "No session counts yet",
+  "summary.none.body_one":
+    "{{count}} session is completed, but does not meet what the study requires. Its page says why.",
+  "summary.none.body_other":
+    "{{count}} sessions are completed, but do not meet what the study requires. Their pages say why.",
   "summary.label": "Summary",
   "summary.n": "Participants",
   "summary.ofPlanned": "of {{planned}} planned",
@@ -137,6 +156,25 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "statistics.collapse": "Alle schließen",
   "glance.effect": "Effekt von {{contrast}}, Standardabweichungen",
   "glance.difference": "Mittlere Differenz [95-%-Intervall]",
+  "study.tab.summary": "Zusammenfassung",
+  "summary.lead":
+    "Der Stand der Studie auf einer Seite, zum Weitergeben oder Drucken. Ihre Adresse öffnet sie für alle mit einem Konto hier, die Bedingungen vergleichen dürfen.",
+  "summary.link": "Link kopieren",
+  "summary.linked": "Link kopiert",
+  "summary.print": "Drucken",
+  "summary.asOf": "Daten vom {{when}}",
+  "summary.test": "Haupttest",
+  "summary.test.none":
+    "Die Studie hat vor ihrer ersten Sitzung keinen primären Test festgelegt; deshalb ist jedes Ergebnis hier explorativ.",
+  "summary.figures": "Abbildungen",
+  "summary.more": "Alle Abbildungen",
+  "summary.excluded": "Wer nicht dabei ist",
+  "summary.level": "α = {{alpha}}, {{study}}, Version {{version}}",
+  "summary.none": "Noch zählt keine Sitzung",
+  "summary.none.body_one":
+    "{{count}} Sitzung ist abgeschlossen, erfüllt aber nicht, was die Studie verlangt. Ihre Seite sagt, warum.",
+  "summary.none.body_other":
+    "{{count}} Sitzungen sind abgeschlossen, erfüllen aber nicht, was die Studie verlangt. Ihre Seiten sagen, warum.",
   "summary.label": "Zusammenfassung",
   "summary.n": "Teilnehmende",
   "summary.ofPlanned": "von {{planned}} geplanten",

@@ -6,6 +6,7 @@ import { seconds } from "@shared/units";
 import { type JSX, useEffect, useRef } from "react";
 import { useTexts } from "../../i18n";
 import { PLAN, planDurationS } from "../../selftest/plan";
+import { PREPARED_WITHIN_S } from "../../selftest/preparation";
 import { LEAST_DURATION_S } from "../../selftest/report";
 import type { Progress } from "../../selftest/screens";
 import classes from "./SelfTest.module.css";
@@ -33,6 +34,7 @@ export function SelfTestOffer({ test, hasVr, onScreen }: OfferProps): JSX.Elemen
       >
         {t(hasVr ? "selftest.button" : "selftest.buttonOnScreen")}
       </Button>
+      {test.isHeldBack && <p className={classes.what}>{t("selftest.heldBack")}</p>}
       <p className={classes.what}>{t("selftest.what")}</p>
       {test.isOvertaken && (
         <Notice tone="info" title={t("selftest.visit.title")}>
@@ -111,7 +113,7 @@ export function SelfTestOnScreen({ test, onEnd }: ScreenProps): JSX.Element {
   );
 }
 
-const OVER: ReadonlySet<Progress["kind"]> = new Set(["kept", "short", "stored"]);
+const OVER: ReadonlySet<Progress["kind"]> = new Set(["kept", "short", "unseen", "stored"]);
 
 function titleOf(t: ReturnType<typeof useTexts>["t"], progress: Progress): string {
   switch (progress.kind) {
@@ -130,6 +132,21 @@ function Said({ progress }: { readonly progress: Progress }): JSX.Element | null
   if (progress.kind === "stored") return null;
   if (progress.kind === "short") {
     return <p>{t("selftest.short.body", { seconds: LEAST_DURATION_S })}</p>;
+  }
+  if (progress.kind === "preparing") {
+    const waited = { waited: progress.waitedS, most: PREPARED_WITHIN_S };
+    const said = t(`selftest.awaited.${progress.awaited}`, waited);
+    return (
+      <>
+        <p>{t("selftest.preparing.body")}</p>
+        <Bar
+          value={(100 * progress.waitedS) / PREPARED_WITHIN_S}
+          aria-label={said}
+          className={classes.bar ?? ""}
+        />
+        <p className={classes.left}>{said}</p>
+      </>
+    );
   }
   if (progress.kind !== "measuring") return <p>{t(`selftest.${progress.kind}.body`)}</p>;
   const { place, isScripted } = progress;

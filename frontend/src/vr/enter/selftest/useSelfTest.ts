@@ -9,6 +9,8 @@ import { knowsHands, type VisitState } from "../useVisit";
 export interface SelfTestState {
   /** Whether a test may begin now. */
   readonly isPossible: boolean;
+  /** The session is under way and leaves no time for one. */
+  readonly isHeldBack: boolean;
   /** How far the newest test is; null before the first, or once it was put away. */
   readonly progress: Progress | null;
   /** The test is shown, in VR or on the screen. */
@@ -45,6 +47,9 @@ export function useSelfTest(pairing: Pairing, visit: VisitState, language: strin
   const [refused, setRefused] = useState<readonly Refusal[]>([]);
   /** Tries in a row after which reports still waited. */
   const [failures, setFailures] = useState(0);
+  // Every state of the session comes with a welcome of its own, and begins no test anew.
+  const around = useRef({ welcome, language });
+  around.current = { welcome, language };
   const running = useRef<SelfTest | null>(null);
   const newestId = useRef("");
 
@@ -99,11 +104,12 @@ export function useSelfTest(pairing: Pairing, visit: VisitState, language: strin
   useEffect(() => dispose, [dispose]);
 
   const make = useCallback((): SelfTest | null => {
+    const { welcome, language } = around.current;
     if (Test === null || welcome === null) return null;
     dispose();
     setError(null);
     setOvertaken(false);
-    setProgress({ kind: "preparing" });
+    setProgress({ kind: "preparing", awaited: "body", waitedS: 0 });
     setShown(true);
     const test = new Test({
       token: pairing.token,
@@ -121,7 +127,7 @@ export function useSelfTest(pairing: Pairing, visit: VisitState, language: strin
     });
     running.current = test;
     return test;
-  }, [Test, welcome, language, pairing, outbox, deliver, dispose]);
+  }, [Test, pairing, outbox, deliver, dispose]);
 
   const begin = useCallback(() => {
     make()
@@ -151,6 +157,7 @@ export function useSelfTest(pairing: Pairing, visit: VisitState, language: strin
   }, [isWanted, dispose]);
 
   return {
+    isHeldBack: isReady && !isBetween && !visit.isOver,
     isPossible: Test !== null && isBetween && vr !== "entering" && vr !== "shown",
     progress,
     isShown,

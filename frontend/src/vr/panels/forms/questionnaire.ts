@@ -302,6 +302,7 @@ export class Questionnaire implements PanelContent {
         return this.#become({ name: "refused", error: delivery.error });
       case "stored":
       case "superseded":
+      case "withdrawn":
         this.#become({ name: "done" });
         return onSettled();
       case "unpaired":

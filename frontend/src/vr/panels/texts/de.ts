@@ -95,6 +95,8 @@ export const de: Record<keyof typeof en, string> = {
     "Stellen Sie sich in die durchsichtige Figur und strecken Sie die Arme so aus wie sie. Drücken Sie dann beide Greiftasten.",
   "steppingIn.bodyHands":
     "Stellen Sie sich in die durchsichtige Figur und strecken Sie die Arme so aus wie sie. Machen Sie dann zwei Fäuste.",
+  "steppingIn.keys":
+    "Auf diesem Bildschirm: Die Leertaste drückt beide Griffe, T streckt die Arme aus.",
   "ready.body": "Die Versuchsleitung beginnt, sobald Sie bereit sind.",
   "preparing.countdown": "Beginnt in {{seconds}} s",
   "aloud.title": "Bitte antworten Sie mündlich",

@@ -91,6 +91,7 @@ export const en = {
     "Stand in the transparent figure with your arms stretched out like its arms. Then press both grips.",
   "steppingIn.bodyHands":
     "Stand in the transparent figure with your arms stretched out like its arms. Then make two fists.",
+  "steppingIn.keys": "On this screen: Space presses both grips, T stretches out the arms.",
   "ready.body": "The experimenter starts as soon as you are ready.",
   "preparing.countdown": "Starts in {{seconds}} s",
   "aloud.title": "Please answer aloud",

@@ -10,6 +10,17 @@ export const selfTestDe: Record<keyof typeof selfTestEn, string> = {
     "Misst Bildrate, Physik, Tracking und Speicherung auf diesem Gerät. Nichts davon gehört zu einer Sitzung.",
   "selftest.title": "Test dieser VR-Brille",
   "selftest.stop": "Test beenden",
+  "selftest.heldBack":
+    "Nicht, während die Sitzung läuft: Der Test geht wieder, bevor der Körper betreten wird und nach dem Ende.",
+  "selftest.awaited.body":
+    "Der Körper und seine Physik werden erwartet: {{waited}} von höchstens {{most}} s.",
+  "selftest.awaited.sending":
+    "Der Speicher des Servers wird erwartet: {{waited}} von höchstens {{most}} s.",
+  "selftest.awaited.picture":
+    "Das erste Bild des Körpers wird erwartet: {{waited}} von höchstens {{most}} s.",
+  "selftest.unseen.title": "Dieses Gerät hat keine Bilder gezeichnet",
+  "selftest.unseen.body":
+    "In der Zeit eines ganzen Tests gab es zu wenige Bilder, um etwas zu messen. Holen Sie diese Seite nach vorn, schließen Sie andere Programme und Tabs und schalten Sie in den Einstellungen des Browsers die Grafikbeschleunigung ein. Testen Sie dann erneut.",
   "selftest.preparing.title": "Der Test wird vorbereitet",
   "selftest.preparing.body": "Raum und Körper werden geladen. Das dauert einige Sekunden.",
   "selftest.step": "Test, Teil {{number}} von {{total}}",

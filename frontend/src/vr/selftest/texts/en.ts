@@ -9,6 +9,16 @@ export const selfTestEn = {
     "Measures frame rate, physics, tracking and storage on this device. Nothing of it belongs to a session.",
   "selftest.title": "Test of this headset",
   "selftest.stop": "Stop the test",
+  "selftest.heldBack":
+    "Not while the session is under way: the test is possible again before the body is entered and after the end.",
+  "selftest.awaited.body":
+    "Waiting for the body and its physics: {{waited}} of at most {{most}} s.",
+  "selftest.awaited.sending": "Waiting for the server's storage: {{waited}} of at most {{most}} s.",
+  "selftest.awaited.picture":
+    "Waiting for the first picture of the body: {{waited}} of at most {{most}} s.",
+  "selftest.unseen.title": "This device drew no pictures",
+  "selftest.unseen.body":
+    "In the time of a whole test there were too few pictures to measure anything. Bring this page to the front, close other programs and tabs, and turn on graphics acceleration in the browser's settings. Then test again.",
   "selftest.preparing.title": "Preparing the test",
   "selftest.preparing.body": "The room and the body are being loaded. It takes a few seconds.",
   "selftest.step": "Test, part {{number}} of {{total}}",

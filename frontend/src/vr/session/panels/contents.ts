@@ -130,8 +130,13 @@ export class Contents {
             );
       case "stepping_in": {
         const how = words(step.holdsController ? "steppingIn.body" : "steppingIn.bodyHands");
+        // The study's own text speaks of grips, which a keyboard does not have.
+        const keys = this.#parts.isWorn() ? "" : words("steppingIn.keys");
         return still({
-          ...prompt("stepping in", step.title ?? words("steppingIn.title"), [step.text ?? how]),
+          ...prompt("stepping in", step.title ?? words("steppingIn.title"), [
+            step.text ?? how,
+            keys,
+          ]),
           isLow: true,
         });
       }

@@ -2,6 +2,9 @@
 import { answer, server } from "@shared/api/request";
 import type { Administration, Receipt, Submission } from "@shared/api/types";
 
+/** The database of this browser in which the forms of headsets are kept. */
+export const HEADSET_FORMS = "reembody-headset-forms";
+
 /** What the panels ask of the server; each throws ApiError or Unreachable. */
 export interface Desk {
   /** The form that is due inside the headset. */

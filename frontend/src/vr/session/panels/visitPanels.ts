@@ -27,7 +27,7 @@ import { type BoundaryProblem, edgeDistanceM, type FloorPoint, type World } from
 import type { Cover, Place } from "../ports";
 import { CalibrationPanel } from "./calibrationPanel";
 import { Contents } from "./contents";
-import type { Desk } from "./desk";
+import { type Desk, HEADSET_FORMS } from "./desk";
 import { type Situation, type Wanted, wanted } from "./wanted";
 
 export interface VisitPanelsParts {
@@ -79,14 +79,13 @@ const EDGE_M = { begins: 0.3, ends: 0.45 } as const;
 const CUT_S = 0.12;
 /** Before the end of a freeze, when the body jumps to where the participant is. */
 const FADE_BEFORE_S = 0.25;
-const FORMS = "reembody-headset-forms";
 
 export class VisitPanels {
   readonly #parts: VisitPanelsParts;
   readonly #panels: Panels;
   readonly #pauseRoom = new PauseRoom();
   readonly #gesture = new StopGesture();
-  readonly #store = new StoredForms(openForms(FORMS));
+  readonly #store = new StoredForms(openForms(HEADSET_FORMS));
   /** The upper end of the boxes. */
   readonly #highestM = new WeakMap<TaskLayout, number>();
   #ring: StopRing | null = null;
@@ -172,6 +171,11 @@ export class VisitPanels {
   }
 
   /** Let the panel stand in front of the wearer again. */
+  /** The study is shown in a window; `halfViewRad`: from its middle to its edge. */
+  fitWindow(halfViewRad: number): void {
+    this.#panels.halfViewRad = halfViewRad;
+  }
+
   recentre(): void {
     this.#panels.recentre();
   }

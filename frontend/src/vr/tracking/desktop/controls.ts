@@ -58,6 +58,48 @@ const AROUND: Readonly<Partial<Record<DesktopAction, readonly [x: number, z: num
   rightwards: [STEP_M, 0],
 };
 
+/**
+ * What is held down, as frames see it: what was pressed and let go between two frames is held for one
+ * frame, however far apart frames are.
+ */
+class Held<What> {
+  private readonly held = new Set<What>();
+  /** Pressed since the last frame, which has not seen it. */
+  private readonly unseen = new Set<What>();
+  /** Let go before a frame has seen it. */
+  private readonly brief = new Set<What>();
+
+  press(what: What): void {
+    this.held.add(what);
+    this.unseen.add(what);
+    this.brief.delete(what);
+  }
+
+  release(what: What): void {
+    if (this.unseen.has(what)) this.brief.add(what);
+    else this.held.delete(what);
+  }
+
+  releaseAll(): void {
+    for (const what of [...this.held]) this.release(what);
+  }
+
+  has(what: What): boolean {
+    return this.held.has(what);
+  }
+
+  /** A frame has seen everything that is held. */
+  seen(): void {
+    for (const what of this.brief) this.held.delete(what);
+    this.unseen.clear();
+    this.brief.clear();
+  }
+
+  [Symbol.iterator](): IterableIterator<What> {
+    return this.held.values();
+  }
+}
+
 export class DesktopControls {
   /** The hand that reaches. */
   side: PersonSide = "right";
@@ -65,7 +107,7 @@ export class DesktopControls {
   pitchRad = -0.15;
   depthM = 0.6;
   isReaching = false;
-  private readonly held = new Set<DesktopAction>();
+  private readonly held = new Held<DesktopAction | "select">();
   private steps: readonly (0 | 1)[] = [];
 
   /** The mouse moved by pixels. */
@@ -86,16 +128,22 @@ export class DesktopControls {
     if (action === "other_hand") this.side = this.side === "right" ? "left" : "right";
     if (action === "left_foot") this.steps = [...this.steps.slice(-1), 0];
     if (action === "right_foot") this.steps = [...this.steps.slice(-1), 1];
-    this.held.add(action);
+    this.held.press(action);
   }
 
   release(action: DesktopAction): void {
-    this.held.delete(action);
+    this.held.release(action);
+  }
+
+  /** The button that selects went down or up. */
+  select(isDown: boolean): void {
+    if (isDown) this.held.press("select");
+    else this.held.release("select");
   }
 
   /** The page lost the keyboard: nothing is held any more. */
   releaseAll(): void {
-    this.held.clear();
+    this.held.releaseAll();
     this.isReaching = false;
   }
 
@@ -110,8 +158,9 @@ export class DesktopControls {
   }
 
   /** Tell the body what is asked for now; `eyesM`: where its eyes are. */
-  direct(person: ScriptedPerson, eyesM: Vector, isSelecting: boolean): void {
+  direct(person: ScriptedPerson, eyesM: Vector): void {
     const { gaze } = this;
+    const isSelecting = this.held.has("select");
     person.lookAt(plus(eyesM, times(gaze, 2)));
     for (const side of ["left", "right"] as const) {
       const isOwn = side === this.side;
@@ -123,6 +172,7 @@ export class DesktopControls {
     person.squat = this.held.has("squat") ? 1 : 0;
     person.take(this.held.has("t_pose") ? "t_pose" : "ease");
     if (!person.isStepping) this.walk(person, eyesM);
+    this.held.seen();
   }
 
   private walk(person: ScriptedPerson, eyesM: Vector): void {
@@ -136,7 +186,7 @@ export class DesktopControls {
     }
     let [x, z] = person.standsAt;
     for (const action of this.held) {
-      const [dx, dz] = AROUND[action] ?? [0, 0];
+      const [dx, dz] = (action === "select" ? undefined : AROUND[action]) ?? [0, 0];
       x += dx;
       z += dz;
     }

@@ -89,12 +89,26 @@ describe("A participant at a desk", () => {
     const { controls } = desk.source;
     controls.press("grips");
     controls.press("other_hand");
-    desk.source.isSelecting = true;
+    controls.select(true);
     const { hands, parts } = desk.frames(0.1);
     expect([hands.left.isSqueezing, hands.right.isSqueezing]).toEqual([true, true]);
     expect([hands.left.isSelecting, hands.right.isSelecting]).toEqual([true, false]);
     expect([hands.left.ray === null, hands.right.ray === null]).toEqual([false, true]);
     expect(parts.LeftLowerLeg).toMatchObject({ state: "tracked", device: "joint" });
+  });
+
+  it("holds for one frame what was pressed and let go between two frames", () => {
+    const desk = new Desk();
+    const { controls } = desk.source;
+    desk.frames(0.1);
+    controls.press("grips");
+    controls.release("grips");
+    controls.select(true);
+    controls.releaseAll();
+    const { hands } = desk.source.read(1);
+    expect([hands.left.isSqueezing, hands.right.isSelecting]).toEqual([true, true]);
+    const later = desk.source.read(1.5).hands;
+    expect([later.left.isSqueezing, later.right.isSelecting]).toEqual([false, false]);
   });
 
   it("moves no faster than a body, whatever the mouse does", () => {

@@ -22,8 +22,6 @@ export class DesktopSource implements TrackingSource {
   readonly measures: ReadonlySet<GoalPart> = new Set(MEASURES);
   readonly knownBody: KnownBody;
   readonly controls = new DesktopControls();
-  /** Whether the left mouse button is held. */
-  isSelecting = false;
   private readonly person: ScriptedPerson;
   private readonly joints: WornDevices;
   private readonly head: WornDevices;
@@ -38,7 +36,7 @@ export class DesktopSource implements TrackingSource {
 
   read(timeS: number): TrackedFrame {
     const { person, controls, frame } = this;
-    controls.direct(person, this.head.place("Head").positionM, this.isSelecting);
+    controls.direct(person, this.head.place("Head").positionM);
     person.advance(timeS);
     clear(frame, timeS);
     for (const part of MEASURES) set(frame.parts[part], this.joints.place(part), "joint");

@@ -5,7 +5,7 @@
 import { mountPage } from "@shared/ui/Page";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useState } from "react";
-import { translations } from "../../../i18n";
+import { loaded, translations } from "../../../i18n";
 import { type AvatarFile, savedVersionQuery } from "../source";
 import { Tryout } from "../Tryout";
 
@@ -48,4 +48,4 @@ root.id = "root";
 document.body.replaceChildren(root);
 document.documentElement.lang = "en";
 document.title = "Try-out";
-mountPage({ translations, children: <TryoutPage /> });
+void loaded.then(() => mountPage({ translations, children: <TryoutPage /> }));
