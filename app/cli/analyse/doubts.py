@@ -1,18 +1,23 @@
-"""Doubt what looks like a slip in a table for `reembody analyse`: names, levels, codes.
+"""Doubt what looks like a slip in a table for `reembody analyse`: levels, orders, codes, decimals.
 
 Nothing is corrected, since only the person who wrote the table knows: each doubt is a sentence with
 the line, what was done, and what to do.
 """
 
+import re
 from collections.abc import Collection, Sequence
 from difflib import get_close_matches
 from statistics import median
 
 from app.cli.analyse.inputs import TidyInput, plainly
-from app.science.statistics import as_number, ordered_levels, place_of
+from app.science.instruments import USUAL_MISSING_CODES
+from app.science.statistics import Cells, as_number, has_order, ordered_levels, place_of
 
-MISSING_CODES = frozenset({-9999.0, -999.0, -99.0, -9.0, 99.0, 999.0, 9999.0})
-"""Numbers that questionnaires and statistics programs often store for a missing value."""
+_FOR_REMARKS = re.compile(
+    r"|notes?|remarks?|comments?|bemerkung(en)?|anmerkung(en)?|kommentare?|notiz(en)?|unnamed"
+    r"|columns?|spalten?|x"
+)
+"""Names of columns in which nobody expects numbers of one or two digits."""
 _SHOWN = 8
 _RARE, _USUAL = 0.1, 0.5
 """Share of the subjects who have a level at most, and other levels at least, for it to be doubted.
@@ -21,16 +26,54 @@ One subject is always few."""
 _FEWEST_SUBJECTS = 3
 
 
-def alike_subjects(subjects: Sequence[str], column: str) -> list[str]:
-    """Ask about subjects whose names differ only in capitals, and may be one person."""
-    spelt: dict[str, list[str]] = {}
-    for name in subjects:
-        spelt.setdefault(name.casefold(), []).append(name)
+def split_decimals(measure: str, read: TidyInput) -> list[str]:
+    """Ask whether decimal commas have moved the decimals of the measure into the next column.
+
+    In a table with commas, 4,36 is two cells, and fits a header with a column for remarks.
+    """
+    if read.right_of_measure is None:
+        return []
+    name, cells = read.right_of_measure
+    filled = [
+        (value, cell, line)
+        for value, cell, line in zip(read.measure, cells, read.lines, strict=True)
+        if cell
+    ]
+    plain = _FOR_REMARKS.fullmatch(re.sub(r"[\W\d_]+", "", name.casefold())) is not None
+    if not plain or 2 * len(filled) < len(cells):
+        return []
+    if not all(re.fullmatch(r"\d{1,2}", cell) for _, cell, _ in filled) or not all(
+        re.fullmatch(r"[+-]?\d+", value) for value in read.measure if value
+    ):
+        return []
+    value, cell, line = filled[0]
+    asked = (
+        f"line {line} has {value} in {measure} and {cell} in {name!r} beside it, and so on: is it"
+        f" {value},{cell}, whose decimal comma separates columns here? {measure} was read as"
+        " whole numbers; if it has decimals, save the file with semicolons or decimal points"
+    )
+    return [asked]
+
+
+def contradicted_orders(cells: Cells, declared: Collection[str]) -> list[str]:
+    """Note declared orders of numeric levels that are not the order of the numbers."""
+    found = []
+    for factor, levels in zip(cells.factors, cells.levels, strict=True):
+        usual = ordered_levels(levels)
+        if factor in declared and has_order(levels) and levels != usual:
+            found.append(
+                f"{factor}: the declared order {', '.join(levels)} is not that of the numbers"
+                f" ({', '.join(usual)}); trends and the first level that differs follow the"
+                " declared one. Leave --order away to have the numbers in order"
+            )
+    return found
+
+
+def unused_codes(measure: str, read: TidyInput) -> list[str]:
+    """Note codes of missing values that occur in no cell, which may be mistyped."""
     return [
-        f"{column} {' and '.join(names)} differ only in capitals: one person? They were analysed as"
-        f" {len(names)}; if they are one, spell them alike"
-        for names in spelt.values()
-        if len(names) > 1
+        f"--missing {code} stands in no cell of {measure} that was read: was another code meant?"
+        for code in read.unused_codes
     ]
 
 
@@ -125,22 +168,30 @@ def doubtful_means(read: TidyInput) -> list[str]:
 
 
 def missing_codes(measure: str, read: TidyInput) -> list[str]:
-    """Name values such as -99 that are usual codes for a missing value and far from all others."""
+    """Name values such as -99 that are usual codes for a missing value and unlike all others.
+
+    They are unlike if they are farther away than all others are apart, or the only negative ones.
+    """
     numbers = [as_number(text) for text in read.measure]
-    others = [one for one in numbers if one is not None and one not in MISSING_CODES]
+    others = [one for one in numbers if one is not None and one not in USUAL_MISSING_CODES]
     if not others:
         return []
     low, high = min(others), max(others)
+    # Where 0 to 6 are answers, -1 may be one: some scales have a middle of 0.
+    from_zero = low == 0.0 and all(map(float.is_integer, others))
     found = []
-    for code in sorted(MISSING_CODES & {one for one in numbers if one is not None}):
-        if max(low - code, code - high) <= high - low:
+    for code in sorted(USUAL_MISSING_CODES & {one for one in numbers if one is not None}):
+        far = max(low - code, code - high) > high - low
+        alone = code < 0.0 <= low and not (code == -1.0 and from_zero)
+        if not (far or alone):
             continue
         lines = [line for line, one in zip(read.lines, numbers, strict=True) if one == code]
         shown = ", ".join(str(line) for line in lines[:_SHOWN])
         more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
         found.append(
-            f"{measure} is {code:g} in line {shown}{more}, far from all other values ({low:g} to"
-            f" {high:g}); it was used as a number. If it stands for a missing value, say so with"
-            f" --missing {code:g}"
+            f"{measure} is {code:g} in line {shown}{more},"
+            f" {'far from all other values' if far else 'negative beside all other values'}"
+            f" ({low:g} to {high:g}); it was used as a number. If it stands for a missing value,"
+            f" say so with --missing {code:g}"
         )
     return found

@@ -35,6 +35,8 @@ from app.science.statistics import (
 T = TypeVar("T")
 OWN_OUTPUT = frozenset({"friedman", "page_trend", "rm_anova", "against_reference"})
 """Registered tests that have their own fields in the output."""
+LEAST_PEOPLE = 6
+"""Fewest people with an interval; of fewer, no exact test can reach 5 % either."""
 _MOST_FACTORS = 2
 _TWO = 2
 
@@ -61,7 +63,8 @@ class Family:
     Attributes:
         ordered: whether the levels have an order: they are numbers, or it was declared.
         page: Page's trend test, for three levels or more that have an order.
-        intervals: of each pair's mean difference, in the order of `pairs`.
+        mean_differences: of each pair, in the order of `pairs`.
+        intervals: of these; None from fewer than six people.
         planned: each level against the reference, if one was named; Holm-corrected separately.
         further: by key, the outcomes of the registry's other tests.
     """
@@ -71,6 +74,7 @@ class Family:
     friedman: Friedman | None
     page: PageTrend | None
     pairs: tuple[Comparison, ...]
+    mean_differences: tuple[float, ...]
     intervals: tuple[Interval | None, ...]
     planned: AgainstReference | None
     further: dict[str, Outcome]
@@ -138,16 +142,15 @@ def _family_of(
     warnings += [f"{where}{note}" for pair in pairs for note in _notes(pair)]
     # Without differences within any subject there is nothing to rank, which Friedman's test said.
     has_trend = ordered and len(levels) > _TWO and ranked is not None
-    columns = combinations(values.T, 2)
+    differences = [complete_rows(a - b)[0] for a, b in combinations(values.T, 2)] if pairs else []
     return Family(
         question=question,
         ordered=ordered,
         friedman=ranked,
         page=tried(lambda: page_trend(whole), warnings, where) if has_trend else None,
         pairs=pairs,
-        intervals=tuple(mean_interval(complete_rows(a - b)[0], seed) for a, b in columns)
-        if pairs
-        else (),
+        mean_differences=tuple(float(one.mean()) for one in differences),
+        intervals=tuple(mean_interval(one, seed) for one in differences),
         planned=tried(lambda: against_reference(values, levels, reference), warnings, where)
         if reference is not None
         else None,
@@ -159,7 +162,9 @@ def _notes(pair: Comparison) -> list[str]:
     """Name a test that says nothing, and a W that other programs report differently."""
     test, name = pair.test, f"{pair.a} - {pair.b}"
     if test.degenerate:
-        return [f"{name}: {test.degenerate}, so there is nothing to test"]
+        unlike = ". Friedman's and Page's tests rank the values as they are, without rounding"
+        rounded = unlike if test.n_rounded else ""
+        return [f"{name}: {test.degenerate}, so there is nothing to test{rounded}"]
     if not math.isclose(test.w_plus_unrounded, test.w_plus):
         other = (
             f"{name}: R's wilcox.test gives V = {test.w_plus_unrounded:g} instead of"
@@ -195,11 +200,11 @@ def tried(compute: Callable[[], T], warnings: list[str], where: str = "") -> T |
 
 
 def mean_interval(values: FloatArray, seed: int) -> Interval | None:
-    """Return the bootstrap interval of the mean; None for fewer than two values.
+    """Return the bootstrap interval of the mean; None for fewer than six values.
 
     Every interval is drawn from the seed anew: the same values have the same interval in every
     table, whatever else was asked for.
     """
-    if values.size < _TWO:
+    if values.size < LEAST_PEOPLE:
         return None
     return bootstrap_interval(values, mean_of, rng=np.random.default_rng(seed))

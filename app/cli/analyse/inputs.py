@@ -5,7 +5,7 @@ left out: in an export, phases without a limb have no hand or foot. How many row
 why, is part of the result.
 
 Separators are commas, semicolons or tabs, detected in the header; with semicolons, numbers may have
-a decimal comma. Invalid input is rejected with its line and column.
+a decimal comma (`decimals.py`). Invalid input is rejected with its line and column.
 """
 
 import csv
@@ -17,10 +17,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import mode
 
+from app.cli.analyse.decimals import read_numbers
 from app.science.statistics import MISSING, UnusableTable, as_number, ordered_levels
 
 _SEPARATORS = (",", ";", "\t")
-_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+")
 _SHOWN = 60
 _VALUES_SHOWN = 12
 NAMES_OF_MEASURES = frozenset(
@@ -60,6 +60,14 @@ class TidyInput:
     """The columns that may be averaged over, one entry per row."""
     spelt_otherwise: tuple[tuple[str, str, tuple[int, ...]], ...] = ()
     """Conditions, values spelt almost as theirs, and the lines that were left out for it."""
+    read_as: tuple[str, ...] = ()
+    """Sentences on columns whose decimal sign is not the point."""
+    doubtful_numbers: tuple[str, ...] = ()
+    """Doubts about what the signs in numbers mean."""
+    unused_codes: tuple[str, ...] = ()
+    """Codes of missing values that no cell of the measure has."""
+    right_of_measure: tuple[str, list[str]] | None = None
+    """In a table with commas, the column after the measure, if it is not analysed."""
 
 
 @dataclass(frozen=True)
@@ -95,9 +103,11 @@ def read_tidy(
     _check_averaged(averaged, header, requested)
     for row in rows:
         if len(row.cells) != len(header):
+            commas = separator == "," and len(row.cells) > len(header)
             raise UnusableTable(
                 f"Line {row.line} has {len(row.cells)} cells, but the header has {len(header)}."
                 " Give every row one cell for each column, and put text with separators in quotes."
+                + (" If numbers have decimal commas, separate with semicolons." if commas else "")
             )
     left_out = {}
     spelt_otherwise: list[tuple[str, str, tuple[int, ...]]] = []
@@ -112,10 +122,12 @@ def read_tidy(
         if rows and not kept:
             raise UnusableTable(f"Column {name!r} is empty in every row that was asked for.")
         rows = kept
-    columns = {
-        name: [_pointed(row.cells[header.index(name)], separator) for row in rows]
-        for name in requested
+    lines = [row.line for row in rows]
+    columns = {name: [row.cells[header.index(name)] for row in rows] for name in requested}
+    numbers = {
+        name: read_numbers(name, columns[name], lines, separator) for name in [*within, measure]
     }
+    columns |= {name: one.cells for name, one in numbers.items()}
     keys = list(zip(*(columns[name] for name in [subject, *within]), strict=True))
     others = {
         name: [row.cells[at] for row in rows]
@@ -127,13 +139,30 @@ def read_tidy(
         subjects=columns[subject],
         within={name: columns[name] for name in within},
         measure=["" if stands_for_missing(text, missing) else text for text in columns[measure]],
-        lines=[row.line for row in rows],
+        lines=lines,
         replicates=_repeated(rows, keys),
         left_out={reason: count for reason, count in left_out.items() if count},
         told_apart_by=told_apart_by,
         averaged_words={name: others[name] for name in averaged},
         spelt_otherwise=tuple(spelt_otherwise),
+        read_as=tuple(text for one in numbers.values() for text in one.read_as),
+        doubtful_numbers=tuple(text for one in numbers.values() for text in one.doubts),
+        unused_codes=tuple(
+            code
+            for code in missing
+            if not any(stands_for_missing(text, (code,)) for text in columns[measure])
+        ),
+        right_of_measure=_right_of(measure, header, others) if separator == "," else None,
     )
+
+
+def _right_of(
+    measure: str, header: list[str], others: Mapping[str, list[str]]
+) -> tuple[str, list[str]] | None:
+    """Return the column after the measure, if it is not one of those that are analysed."""
+    at = header.index(measure) + 1
+    name = header[at] if at < len(header) else None
+    return None if name is None or name not in others else (name, others[name])
 
 
 def _check_averaged(averaged: Sequence[str], header: list[str], requested: list[str]) -> None:
@@ -305,12 +334,6 @@ def _check_column(name: str, header: list[str]) -> None:
         raise UnusableTable(f"There is no column {name!r}; there are: {', '.join(header)}.")
     if times > 1:
         raise UnusableTable(f"Column {name!r} occurs {times} times in the header; rename one.")
-
-
-def _pointed(cell: str, separator: str) -> str:
-    if separator == ";" and _DECIMAL_COMMA.fullmatch(cell):
-        return cell.replace(",", ".")
-    return cell
 
 
 def _repeated(rows: list[_Row], keys: list[tuple[str, ...]]) -> int:

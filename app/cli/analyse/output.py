@@ -39,7 +39,7 @@ def as_text(done: Analysis) -> str:
     )
     lines = [f"{order.measure} by {factors}: {complete}."]
     lines += [f"Note: {one}." for one in done.alike]
-    lines += [f"{rows}.", "", *_means(done)]
+    lines += [f"{rows}.", *(f"Read: {one}." for one in done.read_as), "", *_means(done)]
     for family in done.families:
         lines += ["", *_family(family)]
     if done.rm_anova is not None:
@@ -49,6 +49,8 @@ def as_text(done: Analysis) -> str:
     lines += ["", *(line.format(seed=order.seed) for line in _LEGEND)]
     if len(cells.subjects) < _MANY:
         lines.append(_NARROW)
+    if done.no_intervals_because is not None:
+        lines.append(f"CI: {done.no_intervals_because[0].lower()}{done.no_intervals_because[1:]}.")
     others = (one.rstrip(".") for one in done.warnings if one not in done.alike)
     lines += [f"Note: {warning}." for warning in others]
     return "\n".join(lines)
@@ -103,11 +105,11 @@ def _pairs(family: Family) -> Iterator[str]:
         f"  {'Wilcoxon':<{width}}{'n':>4}{'zero':>6}{'W':>8}{'p':>9}{'p Holm':>9}{'r':>8}"
         f"{'mean diff':>12}{'CI':>24}"
     )
-    for one, interval in zip(family.pairs, family.intervals, strict=True):
-        mean = _NONE if interval is None else _figure(interval.estimate)
+    figures = zip(family.pairs, family.mean_differences, family.intervals, strict=True)
+    for one, mean, interval in figures:
         yield (
             f"  {f'{one.a} - {one.b}':<{width}}{one.test.n:>4}{one.test.n_zero:>6}{_tested(one)}"
-            f"{mean:>12}{_ends(interval):>24}"
+            f"{_figure(mean):>12}{_ends(interval):>24}"
         )
 
 

@@ -50,6 +50,8 @@ def as_json(done: Analysis) -> dict[str, Any]:
             "left_out_listwise": list(done.complete.left_out),
             "rule": "listwise for Friedman, Page and ANOVA; pairwise for Wilcoxon; none imputed",
         },
+        "read_as": list(done.read_as),
+        "no_intervals_because": done.no_intervals_because,
         "warnings": done.warnings,
         "seed": done.order.seed,
     }
@@ -88,8 +90,8 @@ def _family_json(family: Family) -> dict[str, Any]:
         "at": family.question.at,
         "friedman": _friedman(family.friedman),
         "pairwise": [
-            _pair(one, interval)
-            for one, interval in zip(family.pairs, family.intervals, strict=True)
+            _pair(*one)
+            for one in zip(family.pairs, family.mean_differences, family.intervals, strict=True)
         ],
         "page": _page(family.page),
         "against_reference": _planned(family.planned, ordered=family.ordered),
@@ -107,10 +109,10 @@ def _friedman(test: Friedman | None) -> dict[str, Any] | None:
     return {**_values(test, *named), "mean_ranks": list(test.mean_ranks)}
 
 
-def _pair(one: Comparison, interval: Interval | None) -> dict[str, Any]:
+def _pair(one: Comparison, mean: float, interval: Interval | None) -> dict[str, Any]:
     return {
         **_tested(one),
-        "mean_difference": None if interval is None else interval.estimate,
+        "mean_difference": mean,
         "mean_difference_ci": _interval(interval),
     }
 

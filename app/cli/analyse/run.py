@@ -7,14 +7,17 @@ from pathlib import Path
 import numpy as np
 
 from app.cli.analyse.doubts import (
-    alike_subjects,
+    contradicted_orders,
     doubtful_means,
     missing_codes,
     mistyped_levels,
     nearly_asked_for,
+    split_decimals,
+    unused_codes,
 )
-from app.cli.analyse.families import Family, families_of, mean_interval, tried
+from app.cli.analyse.families import LEAST_PEOPLE, Family, families_of, mean_interval, tried
 from app.cli.analyse.inputs import TidyInput, read_tidy
+from app.cli.analyse.people import alike_subjects, same_people, summary_rows
 from app.science.statistics import (
     AlignedRanks,
     Cells,
@@ -84,9 +87,25 @@ class Analysis:
     """How many rows of the file were left out, by reason."""
     averaged_over: tuple[str, ...] = ()
     """Columns that tell the values of each cell apart, whose mean was taken."""
+    read_as: tuple[str, ...] = ()
+    """Sentences on columns whose decimal sign is not the point."""
     alike: tuple[str, ...] = ()
-    """The warnings about names of subjects or levels that may be one, which come first."""
+    """The warnings about names, levels and numbers that may be mistaken, which come first."""
     warnings: list[str] = field(default_factory=list)
+
+    @property
+    def no_intervals_because(self) -> str | None:
+        """Why some mean has no interval; None if all have one."""
+        sizes = [one.n for one in self.means if one.interval is None]
+        for family in self.families:
+            pairs = zip(family.pairs, family.intervals, strict=True)
+            sizes += [pair.test.n for pair, interval in pairs if interval is None]
+        if not sizes:
+            return None
+        return (
+            f"None from fewer than {LEAST_PEOPLE} people, as few as {min(sizes)} here: it would be"
+            " too narrow, and no exact test of so few can reach 5 %"
+        )
 
 
 def carry_out(order: AnalyseOrder) -> Analysis:
@@ -119,14 +138,21 @@ def carry_out(order: AnalyseOrder) -> Analysis:
         orders=orders,
     )
     complete = cells.complete()
-    mistyped = [text for factor in cells.factors for text in mistyped_levels(factor, read)]
-    _check_usable(order, cells, complete, mistyped)
+    alike = (
+        alike_subjects(read, order.subject)
+        + [text for factor in cells.factors for text in mistyped_levels(factor, read)]
+        + summary_rows(read, order.subject)
+        + same_people(cells, order.subject)
+        + list(read.doubtful_numbers)
+        + split_decimals(order.measure, read)
+    )
+    _check_usable(order, cells, complete, alike)
     left_out = read.left_out | ({f"no {order.measure}": cells.n_empty} if cells.n_empty else {})
-    alike = alike_subjects(cells.subjects, order.subject) + mistyped
     warnings = (
         alike + nearly_asked_for(read) + doubtful_means(read) + _warnings(cells, complete, read)
     )
-    warnings += missing_codes(order.measure, read)
+    warnings += missing_codes(order.measure, read) + unused_codes(order.measure, read)
+    warnings += contradicted_orders(cells, orders)
     warnings += [
         f"{count} rows have {reason} and were left out"
         for reason, count in read.left_out.items()
@@ -150,6 +176,7 @@ def carry_out(order: AnalyseOrder) -> Analysis:
         rows_used=int(cells.rows.sum()),
         rows_left_out=left_out,
         averaged_over=read.told_apart_by,
+        read_as=read.read_as,
         alike=tuple(alike),
         warnings=warnings,
     )
@@ -184,7 +211,7 @@ def missing_cells(cells: Cells, subject: str) -> str:
 
 
 def _check_usable(
-    order: AnalyseOrder, cells: Cells, complete: Complete, mistyped: Sequence[str]
+    order: AnalyseOrder, cells: Cells, complete: Complete, doubts: Sequence[str]
 ) -> None:
     if len(complete.subjects) < 2:
         lacking = complete.left_out[0]
@@ -192,8 +219,8 @@ def _check_usable(
             f"only {len(complete.subjects)} of {len(cells.subjects)} subjects have a value of"
             f" {order.measure!r} in every cell; two at least are needed."
         )
-        if mistyped:
-            raise TooFewData("".join(f"{text}. " for text in mistyped) + f"As it is, {few}")
+        if doubts:
+            raise TooFewData("".join(f"{text}. " for text in doubts) + f"As it is, {few}")
         raise TooFewData(
             f"O{few[1:]} {order.subject} {lacking!r}, for example, lacks"
             f" {missing_cells(cells, lacking)}."

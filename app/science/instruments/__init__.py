@@ -5,6 +5,7 @@ are read by `instruments.table`, which loads pandas.
 """
 
 from app.science.instruments.answers import (
+    USUAL_MISSING_CODES,
     fits,
     straight_lined,
     valid_answers,
@@ -27,6 +28,7 @@ from app.science.instruments.items import Choice, Item, Provenance, Scale, Score
 from app.science.instruments.scoring import score_answers, scores_of_columns
 
 __all__ = [
+    "USUAL_MISSING_CODES",
     "AnswerError",
     "Choice",
     "DefinitionProblem",

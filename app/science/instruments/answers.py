@@ -17,6 +17,11 @@ from app.science.instruments.items import Item
 
 FEWEST_RATINGS = 5
 """Fewest ratings of a form for which identical ratings count as straight-lining."""
+USUAL_MISSING_CODES = frozenset(
+    {-9999, -999, -888, -777, -99, -98, -97, -88, -77, -9, -8, -1}
+    | {77, 88, 97, 98, 99, 777, 888, 999, 9999}
+)
+"""Numbers that questionnaires and statistics programs often store for a missing answer."""
 _NUMBERS = (int, float, np.integer, np.floating)
 
 

@@ -7,7 +7,8 @@ from app.science.statistics.errors import StatisticsError, TooFewData
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-_DIGITS = 11
+DIGITS = 11
+"""Digits to which differences that are equal count as equal."""
 
 
 def complete_blocks(values: npt.ArrayLike, *, least: int = 2) -> FloatArray:
@@ -49,7 +50,7 @@ def comparable(differences: FloatArray, scale: float) -> FloatArray:
     """
     if not scale > 0.0:
         return differences
-    unit = 10.0 ** (np.floor(np.log10(scale)) + 1 - _DIGITS)
+    unit = 10.0 ** (np.floor(np.log10(scale)) + 1 - DIGITS)
     rounded: FloatArray = np.round(differences / unit)
     return rounded
 

@@ -32,7 +32,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from app.science.statistics.arrays import FloatArray, comparable, midranks
+from app.science.statistics.arrays import DIGITS, FloatArray, comparable, midranks
 from app.science.statistics.errors import StatisticsError, TooFewData
 
 EXACT_UP_TO = 50
@@ -57,6 +57,7 @@ class SignedRank:
         zeros: the rule for differences of zero.
         n: pairs with both values.
         n_zero: pairs among these whose values are equal.
+        n_rounded: pairs among those whose values differ, but are equal to 11 digits.
         n_left_out: pairs with a missing value (pairwise).
         w_plus_unrounded: W+ if differences were ranked without rounding; the V of R.
     """
@@ -72,13 +73,19 @@ class SignedRank:
     zeros: ZeroRule
     n: int
     n_zero: int
+    n_rounded: int
     n_left_out: int
     w_plus_unrounded: float
 
     @property
     def degenerate(self) -> str:
         """Why the test says nothing about these pairs; empty if it can be used."""
-        return f"all {self.n} differences are zero" if self.n_zero == self.n else ""
+        if self.n_zero < self.n:
+            return ""
+        told = f"all {self.n} differences are zero"
+        if not self.n_rounded:
+            return told
+        return f"{told} to {DIGITS} digits, though {self.n_rounded} of the pairs are not equal"
 
 
 def signed_rank(
@@ -122,6 +129,7 @@ def signed_rank(
         zeros=zeros,
         n=first.size,
         n_zero=first.size - ranks.size,
+        n_rounded=first.size - ranks.size - int((first == second).sum()),
         n_left_out=left_out,
         w_plus_unrounded=_unrounded(first - second, zeros),
     )

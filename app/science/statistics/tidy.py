@@ -34,6 +34,8 @@ from app.science.statistics.levels import (
 MISSING = frozenset({"", "na", "n/a", "nan", "null", "none", "."})
 """Texts that mean a missing value, in upper or lower case."""
 _AVERAGE_DIGITS = 14
+_LARGEST = 1e150
+"""Larger numbers have squares, and so variances, that are no numbers any more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,11 +230,21 @@ def _number(value: str | float, column: str, line: int) -> float:
         if number is None:
             raise UnusableTable(
                 f"Line {line}, column {column!r}: {value!r} is not a finite number. Write numbers"
-                " with a point (in a table with semicolons, a comma will do), and leave the cell"
-                " empty (or NA) where a value is missing."
+                " with a point (in a table with semicolons, a comma will do), without a sign"
+                " between thousands, and leave the cell empty (or NA) where a value is missing."
             )
-        return number
+        return _squared(number, column, line)
     number = float(value)
     if math.isinf(number):
         raise UnusableTable(f"Line {line}, column {column!r}: {value!r} is infinite.")
+    return _squared(number, column, line)
+
+
+def _squared(number: float, column: str, line: int) -> float:
+    """Return a number whose square is one, too; raise UnusableTable for a larger one."""
+    if abs(number) > _LARGEST:
+        raise UnusableTable(
+            f"Line {line}, column {column!r}: {number:g} is beyond {_LARGEST:g}, and its variance"
+            " would be no number. Give the measure in another unit."
+        )
     return number

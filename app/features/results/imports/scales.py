@@ -9,6 +9,8 @@ for a missing answer, words that are on several scales.
 from collections.abc import Collection, Sequence
 from typing import Final
 
+from app.science.instruments import USUAL_MISSING_CODES
+
 AGREEMENT: Final[Sequence[Sequence[str]]] = tuple(
     tuple(words.split(", "))
     for words in (
@@ -35,7 +37,6 @@ AGREEMENT: Final[Sequence[Sequence[str]]] = tuple(
 ENDS: Final = {0: (1, 4, 6, 10, 20, 100), 1: (5, 7, 9, 10, 11, 21, 100)}
 """Lowest answer -> the highest ones that scales beginning there usually have."""
 USUAL_HIGH: Final = 11
-_MISSING_CODES = frozenset({-999, -99, -98, -97, -88, -77, -9, -1, 77, 88, 97, 98, 99, 999})
 _GAP = 5
 
 
@@ -58,8 +59,8 @@ def missing_codes(numbers: Collection[int]) -> list[int]:
 
     The others must be answers on a usual scale, so that 99 among ages is no code.
     """
-    codes = sorted(_MISSING_CODES & set(numbers))
-    answers = set(numbers) - _MISSING_CODES
+    codes = sorted(USUAL_MISSING_CODES & set(numbers))
+    answers = set(numbers) - USUAL_MISSING_CODES
     if not codes or not answers or min(answers) < 0 or max(answers) > USUAL_HIGH:
         return []
     return [code for code in codes if code < 0 or code > max(answers) + _GAP]
