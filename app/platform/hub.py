@@ -62,6 +62,7 @@ class Hub:
     _abilities: dict[str, frozenset[str]] = field(default_factory=dict)
     _heard_s: dict[str, float] = field(default_factory=dict)
     _seen: dict[str, datetime] = field(default_factory=dict)
+    _left: dict[str, datetime] = field(default_factory=dict)
     _signals: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -131,9 +132,19 @@ class Hub:
             self._abilities[session_id] = abilities
             self._headsets[session_id] = self._headsets.get(session_id, 0) + 1
 
-    def headset_left(self, session_id: str) -> None:
+    def headset_left_at(self, session_id: str) -> datetime | None:
+        """Return when the session's last headset socket closed; None if none has, or one is open.
+
+        A headset sends no requests while its socket is open, so `last_seen` cannot tell.
+        """
+        with self._lock:
+            return None if session_id in self._headsets else self._left.get(session_id)
+
+    def headset_left(self, session_id: str, now: datetime | None = None) -> None:
         """Record that a headset's socket was closed."""
         with self._lock:
+            if now is not None:
+                self._left[session_id] = now
             left = self._headsets.get(session_id, 0) - 1
             if left > 0:
                 self._headsets[session_id] = left

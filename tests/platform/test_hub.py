@@ -1,6 +1,7 @@
 """Tests of the live hub: messages reach the subscribers that requested them."""
 
 import asyncio
+from datetime import UTC, datetime
 from typing import Any
 
 from app.platform.hub import Hub
@@ -38,6 +39,18 @@ def test_figures_have_listeners_while_someone_is_subscribed() -> None:
         return [*seen, hub.has_listeners("a", "telemetry")]
 
     assert asyncio.run(look()) == [False, False, True, False, False]
+
+
+def test_a_headset_was_last_there_when_its_last_socket_closed() -> None:
+    """The time of a loss is that of the last socket's end, and of no socket that still serves."""
+    hub = Hub()
+    hub.headset_joined("a")
+    hub.headset_joined("a")
+    hub.headset_left("a", datetime(2026, 3, 2, 9, 30, tzinfo=UTC))
+    assert hub.headset_left_at("a") is None
+    lost = datetime(2026, 3, 2, 9, 45, tzinfo=UTC)
+    hub.headset_left("a", lost)
+    assert hub.headset_left_at("a") == lost
 
 
 def test_frames_of_any_socket_of_a_session_are_its_frames() -> None:

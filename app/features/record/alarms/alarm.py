@@ -119,7 +119,9 @@ class WatchLimits:
     `clock_window_s`. `backlog_s`: movement that is not on disk yet. `low_rate_share`: the lowest
     tolerated share of the usual frame rate, over `low_rate_client_s`; it is slightly less than 72
     of 90 Hz, because displays do have that rate. `gap_client_s`: shorter gaps are counted but raise
-    no alarm. `clear_after_s`: an alarm is cleared when its cause has been absent for so long.
+    no alarm. `asleep_client_s`: the headset's page takes a longer interval for sleep, and stops the
+    clock; `away_client_s`: a longer one is a device that is not used, not a slow one.
+    `clear_after_s`: an alarm is cleared when its cause has been absent for so long.
     `check_every_s`: the interval between checks.
     """
 
@@ -131,6 +133,8 @@ class WatchLimits:
     low_rate_share: float = 0.79
     low_rate_client_s: float = 3.0
     gap_client_s: float = 0.25
+    asleep_client_s: float = 0.5
+    away_client_s: float = 10.0
     clear_after_s: float = 3.0
     check_every_s: float = 0.5
     quality: QualityLimits = DEFAULT_LIMITS

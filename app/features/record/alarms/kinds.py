@@ -55,6 +55,38 @@ ALARMS: tuple[AlarmKind, ...] = (
         ),
     ),
     AlarmKind(
+        key="page_silent",
+        severity="critical",
+        title=Words(
+            en="Participant's page not responding", de="Seite der Person meldet sich nicht"
+        ),
+        remedy=Words(
+            en="Bring the page /vr to the front on its computer: in the background it draws "
+            "nothing.",
+            de="Holen Sie die Seite /vr auf ihrem Rechner nach vorn: Im Hintergrund zeichnet sie "
+            "nichts.",
+        ),
+        remedy_while_paused=Words(
+            en="The phase is paused. Bring the page /vr to the front, then press Resume.",
+            de="Die Phase ist angehalten. Holen Sie die Seite /vr nach vorn und drücken Sie dann "
+            "Fortsetzen.",
+        ),
+    ),
+    AlarmKind(
+        key="too_slow",
+        severity="critical",
+        title=Words(
+            en="Device draws fewer than 2 pictures a second",
+            de="Gerät zeichnet weniger als 2 Bilder in der Sekunde",
+        ),
+        remedy=Words(
+            en="Its clock stands still until there are 2. Close other programs, turn on the "
+            "browser's graphics acceleration, or use a faster device.",
+            de="Bis es 2 sind, steht die Uhr still. Schließen Sie andere Programme, schalten Sie "
+            "die Grafikbeschleunigung des Browsers ein oder nehmen Sie ein schnelleres Gerät.",
+        ),
+    ),
+    AlarmKind(
         key="disconnected",
         severity="critical",
         title=Words(en="Headset disconnected", de="Headset getrennt"),

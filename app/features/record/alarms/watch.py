@@ -19,6 +19,11 @@ from app.features.record.alarms.watches.silence import SilenceWatch
 from app.features.record.alarms.watches.stream import StreamWatch
 from app.wire import FINGER_STREAMS, Batch, HeadsetState, Probed, Produced, StreamName, Welcome
 
+WITHOUT_SENSORS = frozenset({"desktop", "script"})
+"""Sources of poses, by the names of the headset's page, that nothing measures."""
+OF_SENSORS = frozenset({"frozen", "jump"})
+"""Conditions whose remedy is at a sensor: a computed pose may well rest to the last digit."""
+
 
 @dataclass(frozen=True)
 class CheckResult:
@@ -70,6 +75,12 @@ class QualityWatch:
         return self.silence.recording
 
     @property
+    def is_worn(self) -> bool:
+        """Return whether sensors measure the participant, which is assumed until it is told."""
+        goals = self.feet.goals
+        return goals is None or goals.source not in WITHOUT_SENSORS
+
+    @property
     def open(self) -> tuple[Alarm, ...]:
         """Return the open alarms, oldest first."""
         return self.alarms.open
@@ -92,7 +103,10 @@ class QualityWatch:
             # the time. Broken values are flagged and counted where they are stored.
             return ()
         watch = self._stream_watch(header.stream, header.epoch)
-        return self._report(watch.take(batch), now)
+        found = watch.take(batch)
+        if not self.is_worn:
+            found = (one for one in found if one.code not in OF_SENSORS)
+        return self._report(found, now)
 
     def _stream_watch(self, stream: StreamName, epoch: int) -> StreamWatch:
         watch = self._streams.get((stream, epoch))
@@ -121,7 +135,7 @@ class QualityWatch:
         self.silence.note_check(now.monotonic_s, reading=reading)
         self.clock.usable_s = max(self.clock.usable_s, self.silence.unread_until_s)
         found: list[Condition] = [
-            *self.silence.check(now.monotonic_s),
+            *self.silence.check(now.monotonic_s, is_worn=self.is_worn),
             *self.clock.check(now.monotonic_s),
             *self.backlog.check(now.monotonic_s),
             *self.feet.check(),

@@ -295,10 +295,13 @@ def _devices(db: Session, context: AppContext, session: StudySession) -> list[De
     now = context.clock.utc_now()
     views = []
     for device in devices_of_session(db, session.id):
+        seen = context.hub.last_seen(device.id) or device.last_seen_at
         if device.kind == "headset":
             connected = context.hub.headset_connected(session.id)
+            left = context.hub.headset_left_at(session.id)
+            # One that was paired since and has not connected yet was seen then.
+            seen = max((at for at in (seen, left) if at is not None), default=None)
         else:
-            seen = context.hub.last_seen(device.id) or device.last_seen_at
             connected = seen is not None and (now - seen).total_seconds() < TABLET_SILENT_AFTER_S
         views.append(
             DeviceView(
@@ -307,7 +310,7 @@ def _devices(db: Session, context: AppContext, session: StudySession) -> list[De
                 name=device.name,
                 paired_at=device.paired_at,
                 connected=connected,
-                last_seen_at=context.hub.last_seen(device.id) or device.last_seen_at,
+                last_seen_at=seen,
                 self_test=running_test(context, session.id) if device.kind == "headset" else None,
             )
         )

@@ -126,7 +126,7 @@ class HeadsetConnection:
                 self._leave()
 
     def _leave(self) -> None:
-        self.context.hub.headset_left(self.session_id)
+        self.context.hub.headset_left(self.session_id, self.context.clock.utc_now())
         connected = self.context.hub.headset_connected(self.session_id)
         if not connected:
             self._submit(LossContent("headset_lost"))

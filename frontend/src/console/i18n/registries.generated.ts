@@ -98,6 +98,11 @@ export const registryEn = {
   "alarm.silent": "Headset not responding",
   "alarm.silent.do": "Wake the headset, or check that it is worn.",
   "alarm.silent.paused": "The phase is paused. Wake the headset, then press Resume.",
+  "alarm.page_silent": "Participant's page not responding",
+  "alarm.page_silent.do": "Bring the page /vr to the front on its computer: in the background it draws nothing.",
+  "alarm.page_silent.paused": "The phase is paused. Bring the page /vr to the front, then press Resume.",
+  "alarm.too_slow": "Device draws fewer than 2 pictures a second",
+  "alarm.too_slow.do": "Its clock stands still until there are 2. Close other programs, turn on the browser's graphics acceleration, or use a faster device.",
   "alarm.disconnected": "Headset disconnected",
   "alarm.disconnected.do": "Check its battery and network. It reconnects automatically.",
   "alarm.disconnected.paused": "The phase is paused. Check its battery and network; press Resume once it is back.",
@@ -311,6 +316,11 @@ export const registryDe: Readonly<Record<keyof typeof registryEn, string>> = {
   "alarm.silent": "Headset meldet sich nicht",
   "alarm.silent.do": "Wecken Sie das Headset auf oder prüfen Sie, ob es getragen wird.",
   "alarm.silent.paused": "Die Phase ist angehalten. Wecken Sie das Headset auf und drücken Sie dann Fortsetzen.",
+  "alarm.page_silent": "Seite der Person meldet sich nicht",
+  "alarm.page_silent.do": "Holen Sie die Seite /vr auf ihrem Rechner nach vorn: Im Hintergrund zeichnet sie nichts.",
+  "alarm.page_silent.paused": "Die Phase ist angehalten. Holen Sie die Seite /vr nach vorn und drücken Sie dann Fortsetzen.",
+  "alarm.too_slow": "Gerät zeichnet weniger als 2 Bilder in der Sekunde",
+  "alarm.too_slow.do": "Bis es 2 sind, steht die Uhr still. Schließen Sie andere Programme, schalten Sie die Grafikbeschleunigung des Browsers ein oder nehmen Sie ein schnelleres Gerät.",
   "alarm.disconnected": "Headset getrennt",
   "alarm.disconnected.do": "Prüfen Sie Akku und Netz. Es verbindet sich automatisch wieder.",
   "alarm.disconnected.paused": "Die Phase ist angehalten. Prüfen Sie Akku und Netz; drücken Sie Fortsetzen, sobald es wieder verbunden ist.",
@@ -436,6 +446,8 @@ export const CHECKS_MENDED_IN_SECONDS = [
 
 export const ALARMS = [
   "silent",
+  "page_silent",
+  "too_slow",
   "disconnected",
   "backlog",
   "bad_values",
@@ -475,6 +487,7 @@ export const ALARMS_OF_PERSON = [
 
 export const ALARMS_THAT_PAUSE = [
   "silent",
+  "page_silent",
   "disconnected",
 ] as const;
 

@@ -55,7 +55,7 @@ def test_closing_clears_every_alarm_with_a_reason() -> None:
 
 def test_every_alarm_has_a_severity() -> None:
     """Only lost data and participants who are unwell, call, ask or refuse give critical alarms."""
-    losing = {"silent", "disconnected", "storage", "writer_failed"}
+    losing = {"silent", "page_silent", "too_slow", "disconnected", "storage", "writer_failed"}
     critical = {code for code, severity in SEVERITIES.items() if severity == "critical"}
     of_person = {"stop_rule_met", "help_asked", "stop_asked", "question_asked", "consent_refused"}
     assert critical == losing | of_person

@@ -3,6 +3,7 @@
 import pytest
 
 from app.features.record.alarms.alarm import WatchLimits
+from app.wire import GOALS, GoalsReport
 from tests.features.record.alarms.watched import TREMBLING, Watched, at, order, state
 
 SECOND = TREMBLING.part(slice(0, 90))
@@ -122,3 +123,17 @@ def test_a_silent_headset_has_a_frame_rate_of_zero() -> None:
     assert watched.watch.signal(at(ended_s + 2.5))["frame_rate_hz"] == 0.0
     watched.watch.update_state(state(recording=False), at(ended_s + 3.0))
     assert watched.watch.signal(at(ended_s + 3.0))["frame_rate_hz"] is None
+
+
+@pytest.mark.parametrize(
+    ("source", "code"), [("desktop", "page_silent"), ("script", "page_silent"), ("hands", "silent")]
+)
+def test_the_alarm_of_silence_names_what_is_silent(source: str, code: str) -> None:
+    """A page on a screen that sends nothing is not called a headset to be woken."""
+    watched = running()
+    states = dict.fromkeys(GOALS, "tracked")
+    watched.watch.feet.goals = GoalsReport.model_validate(
+        {"t_s": 0.0, "frame_seq": 0, "source": source, "states": states}
+    )
+    watched.wait(watched.play(SECOND), 3.5)
+    assert watched.reported == [(code, "raised")]

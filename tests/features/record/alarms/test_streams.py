@@ -7,7 +7,7 @@ import pytest
 
 from app.science import rotations as rot
 from app.science.skeleton import JOINT_INDEX
-from app.wire import BODY_STREAMS, StreamName
+from app.wire import BODY_STREAMS, GOALS, GoalsReport, StreamName
 from tests.features.record.alarms.watched import TREMBLING, Watched, at, batch, there_and_back
 from tests.science.stream_quality.recordings import Recording, generated
 
@@ -158,3 +158,33 @@ def test_invalid_frames_give_a_signal_of_valid_json() -> None:
     values = [(one.condition.value, one.condition.client_t_s) for one in watched.changes]
     json.dumps([watched.watch.signal(at(10.0)), values], allow_nan=False)
     assert values
+
+
+def test_a_device_that_draws_too_slowly_has_one_alarm_that_says_so() -> None:
+    """Pictures that all come half a second apart or more are one fault, not many gaps."""
+    slow = MINUTE.part(slice(0, 72)).copy()
+    slow.times_s[:] = 0.8 * np.arange(72)
+    watched = Watched()
+    for first in range(0, 72, 2):
+        for stream in BODY_STREAMS:
+            sent = batch(slow, first, 2, stream=stream)
+            watched.changes += watched.watch.batch(sent, at(0.8 * first))
+        watched.check(0.8 * first)
+    raised = [c.condition for c in watched.changes if c.state == "raised"]
+    (condition,) = [one for one in raised if one.code == "too_slow"]
+    assert (condition.value, condition.unit) == (1.2, "Hz")
+    assert sum(one.code == "gap" for one in raised) <= len(BODY_STREAMS)
+
+
+@pytest.mark.parametrize("source", ["desktop", "script"])
+def test_a_computed_pose_raises_no_alarm_of_a_sensor(source: str) -> None:
+    """A joint that rests to the last digit is a fault of a sensor only where there is one."""
+    frozen = MINUTE.copy()
+    frozen.rotations[2000:2600, HEAD] = frozen.rotations[2000, HEAD]
+    watched = Watched()
+    states = dict.fromkeys(GOALS, "tracked")
+    watched.watch.feet.goals = GoalsReport.model_validate(
+        {"t_s": 0.0, "frame_seq": 0, "source": source, "states": states}
+    )
+    watched.play(frozen)
+    assert {code for code, _ in watched.reported} <= {"clock_unknown"}

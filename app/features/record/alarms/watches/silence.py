@@ -53,13 +53,14 @@ class SilenceWatch:
         silent_s = now_s - max(self._last_frame_s, self.unread_until_s)
         return silent_s if self.recording and silent_s >= self.limits.silent_s else 0.0
 
-    def check(self, now_s: float) -> Iterator[Condition]:
-        """Yield a condition if the headset has been silent for too long."""
+    def check(self, now_s: float, *, is_worn: bool = True) -> Iterator[Condition]:
+        """Yield a condition if the headset, or the page on a screen, was silent for too long."""
         silent_s = self.silent_s(now_s)
         if silent_s > 0.0:
+            sender = "headset" if is_worn else "page"
             yield Condition(
-                "silent",
-                f"The headset is connected but has sent no movement for {silent_s:.0f} s",
+                "silent" if is_worn else "page_silent",
+                f"The {sender} is connected but has sent no movement for {silent_s:.0f} s",
                 value=round(silent_s, 1),
                 unit="s",
             )

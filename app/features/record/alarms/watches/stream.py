@@ -16,6 +16,9 @@ FRAMES_AT_ONCE = 90
 CLIENT_S_AT_ONCE = 1.0
 RATES_TO_LEARN = 3
 JOINTS_NAMED = 4
+INTERVALS_OF_PACE = 5
+SLOW_INTERVALS = 4
+"""So many of the last intervals tell a slow device from one that stumbled once."""
 
 
 @dataclass
@@ -47,6 +50,7 @@ class StreamWatch:
     _frames: int = 0
     _medians_s: deque[float] = field(default_factory=lambda: deque(maxlen=5))
     _pace: deque[tuple[int, float]] = field(default_factory=deque)
+    _intervals_s: deque[float] = field(default_factory=lambda: deque(maxlen=INTERVALS_OF_PACE))
 
     def take(self, batch: Batch) -> Iterator[Condition]:
         """Add a batch; once there are enough frames to examine, yield the conditions found."""
@@ -101,6 +105,7 @@ class StreamWatch:
         forward_s = interval_s[interval_s > 0.0]
         if not len(forward_s):
             return
+        self._intervals_s.extend(forward_s.tolist())
         short_s = forward_s[forward_s < self.limits.gap_client_s]
         self._pace.append((len(short_s), float(short_s.sum())))
         while sum(span_s for _, span_s in self._pace) - self._pace[0][1] >= (
@@ -114,7 +119,10 @@ class StreamWatch:
 
     def _conditions(self, times_s: NDArray[np.float64], found: Examination) -> Iterator[Condition]:
         yield from self._bad_values(times_s, found)
-        yield from self._gap(times_s, found)
+        # Where every frame comes so late, each is a gap, and the device is their one cause.
+        slow_hz = self._slow_hz()
+        gaps = list(self._gap(times_s, found))
+        yield from gaps if slow_hz is None else self._too_slow(times_s, slow_hz)
         yield from self._jump(times_s, found)
         yield from self._frozen(times_s, found)
         yield from self._low_rate(times_s)
@@ -148,6 +156,27 @@ class StreamWatch:
                 times_s[gap],
                 value=round(longest_s, 3),
                 unit="s",
+            )
+
+    def _slow_hz(self) -> float | None:
+        """Return the frames per second if nearly every frame comes too late for the clock."""
+        limits = self.limits
+        late_s = [
+            interval_s
+            for interval_s in self._intervals_s
+            if limits.asleep_client_s <= interval_s < limits.away_client_s
+        ]
+        return len(late_s) / sum(late_s) if len(late_s) >= SLOW_INTERVALS else None
+
+    def _too_slow(self, times_s: NDArray[np.float64], rate_hz: float) -> Iterator[Condition]:
+        if self.stream is StreamName.TARGET:
+            least_hz = 1.0 / self.limits.asleep_client_s
+            yield self._condition(
+                "too_slow",
+                f"The device draws {rate_hz:.1f} pictures a second; the clock needs {least_hz:.0f}",
+                times_s,
+                value=round(rate_hz, 1),
+                unit="Hz",
             )
 
     def _jump(self, times_s: NDArray[np.float64], found: Examination) -> Iterator[Condition]:

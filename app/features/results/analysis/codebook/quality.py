@@ -84,8 +84,9 @@ ALARMS: tuple[Column, ...] = (
     _A.text(
         "code",
         "What is wrong.",
-        "silent, disconnected, backlog, bad_values, frozen, low_frame_rate, gap, jump, "
-        "clock_unknown, clock_uncertain, storage, writer_failed, background_failed, "
+        "silent, page_silent, too_slow, disconnected, backlog, bad_values, frozen, "
+        "low_frame_rate, gap, jump, clock_unknown, clock_uncertain, storage, writer_failed, "
+        "background_failed, "
         "stop_rule_met, stop_rule_near, stop_rule_unknown, help_asked, question_asked, stop_asked, "
         "feet_untracked, consent_refused, refusal_retracted, impossible, doubtful",
     ),

@@ -5,7 +5,6 @@
 import type { Alarm, SessionView } from "@shared/api/types";
 import { duration, timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
-import { seconds } from "@shared/units";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
@@ -13,7 +12,7 @@ import { alarmsQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import { RecordDrawer } from "../../ui/RecordDrawer";
 import classes from "../Panels.module.css";
-import { amount, fromRecord, stateOf, titleKey } from "./alarms";
+import { type AlarmGroup, amount, fromRecord, groupsOf, stateOf, titleKey } from "./alarms";
 import strip from "./SignalStrip.module.css";
 
 interface AlarmDrawerProps {
@@ -62,31 +61,29 @@ function AlarmTable({ alarms }: { readonly alarms: readonly Alarm[] }): JSX.Elem
         </tr>
       </thead>
       <tbody>
-        {alarms.map((alarm) => (
-          <AlarmRow key={alarm.id} alarm={alarm} />
+        {groupsOf(alarms).map((group) => (
+          <AlarmRow key={group.newest.id} group={group} />
         ))}
       </tbody>
     </table>
   );
 }
 
-function AlarmRow({ alarm }: { readonly alarm: Alarm }): JSX.Element {
+function AlarmRow({ group }: { readonly group: AlarmGroup }): JSX.Element {
   const { t, language } = useTexts();
+  const { newest: alarm, count, since, lasted } = group;
   const shown = fromRecord(alarm);
   const amountText = amount(shown, language);
   const details = [
     t(`alarm.severity.${alarm.severity}`),
     alarm.stream === null ? null : t(`alarm.stream.${alarm.stream as "target" | "actual"}`),
+    count === 1 ? null : t("alarm.times", { count, time: timeOfDay(alarm.since, language) }),
   ].filter((one) => one !== null);
   return (
     <tr>
-      <td className={classes.nowrap}>{timeOfDay(alarm.since, language)}</td>
+      <td className={classes.nowrap}>{timeOfDay(since, language)}</td>
       <td className={classes.nowrap}>
-        {alarm.cleared_at === null ? (
-          <strong>{t("alarm.still")}</strong>
-        ) : (
-          duration(seconds((Date.parse(alarm.cleared_at) - Date.parse(alarm.since)) / 1000))
-        )}
+        {alarm.cleared_at === null ? <strong>{t("alarm.still")}</strong> : duration(lasted)}
       </td>
       <td>
         <span className={strip[`row_${alarm.severity}`]}>

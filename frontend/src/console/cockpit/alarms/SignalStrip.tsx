@@ -16,6 +16,7 @@ import { awaitsHeadset } from "../session/action";
 import {
   type Alarms,
   amount,
+  groupsOf,
   isCall,
   jointNames,
   mostUrgent,
@@ -40,7 +41,7 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
     first !== undefined ? classes[first.severity] : classes[isAwaited ? "warning" : "fine"];
   const acknowledged = first !== undefined && alarms.isAcknowledged(first);
   const signal = alarms.quality?.signal ?? null;
-  const total = useQuery(alarmsQuery(session.id, stateOf(session))).data?.length ?? 0;
+  const total = groupsOf(useQuery(alarmsQuery(session.id, stateOf(session))).data ?? []).length;
   return (
     <section
       className={`${classes.strip} ${tone} ${acknowledged ? classes.acknowledged : ""}`}

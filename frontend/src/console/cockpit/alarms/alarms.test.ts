@@ -9,6 +9,7 @@ import {
   amount,
   currentAlarms,
   fromRecord,
+  groupsOf,
   jointNames,
   mostUrgent,
   remedyKey,
@@ -154,6 +155,31 @@ describe("the texts of an alarm", () => {
     expect(remedyKey(shown(live("gap")), paused)).toBe("alarm.gap.do");
   });
 
+  it("are one with a count where the same one came again, and as long as all of them", () => {
+    const from = (code: string, second: number, more: Partial<Alarm> = {}) =>
+      recorded(code, {
+        id: `${code} ${second}`,
+        since: `2026-03-02T09:30:0${second}Z`,
+        cleared_at: `2026-03-02T09:30:0${second + 1}Z`,
+        stream: "target",
+        ...more,
+      });
+    const groups = groupsOf([
+      from("gap", 8, { cleared_at: null }),
+      from("jump", 7),
+      from("gap", 5),
+      from("gap", 4, { stream: "actual" }),
+      from("gap", 1),
+    ]);
+    expect(
+      groups.map(({ newest, count, since, lasted }) => [newest.id, count, since, lasted]),
+    ).toEqual([
+      ["gap 8", 3, "2026-03-02T09:30:01Z", 2],
+      ["jump 7", 1, "2026-03-02T09:30:07Z", 1],
+      ["gap 4", 1, "2026-03-02T09:30:04Z", 1],
+    ]);
+  });
+
   it("give the amount with its unit", () => {
     const of = (code: string, value: number, unit: string | null) =>
       amount(shown(live(code, { value, unit })), "en");
@@ -162,6 +188,7 @@ describe("the texts of an alarm", () => {
     expect(of("gap", 0.512, "s")).toBe("0.51 s");
     expect(of("clock_uncertain", 12.4, "ms")).toBe("± 12 ms");
     expect(of("low_frame_rate", 61.2, "Hz")).toBe("61 Hz");
+    expect(of("too_slow", 1.25, "Hz")).toBe("1.3 Hz");
     expect(of("bad_values", 3, null)).toBe("3");
     expect(of("jump", 2, null)).toBeNull();
   });

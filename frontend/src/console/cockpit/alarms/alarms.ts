@@ -1,7 +1,7 @@
 /** The active alarms in order of importance, and their texts. */
 import type { Alarm, FailingNews, LiveAlarm, SessionView, StorageNews } from "@shared/api/types";
 import { clockFace, number } from "@shared/format";
-import { type Milliseconds, milliseconds, seconds } from "@shared/units";
+import { type Milliseconds, milliseconds, type Seconds, seconds } from "@shared/units";
 import { useEffect, useState } from "react";
 import type { Key } from "../../i18n";
 import { ALARMS, ALARMS_OF_PERSON, ALARMS_THAT_PAUSE } from "../../i18n/registries.generated";
@@ -64,6 +64,39 @@ export function fromRecord(alarm: Alarm): ShownAlarm {
   return { ...alarm, key: keyOf(alarm), joints: [], value: grows ? null : alarm.value };
 }
 
+/** An alarm that came and went with one cause: shown once, with how often and how long. */
+export interface AlarmGroup {
+  /** The newest of them. */
+  readonly newest: Alarm;
+  readonly count: number;
+  /** When the first of them began. */
+  readonly since: string;
+  /** How long they lasted together, without one that still lasts. */
+  readonly lasted: Seconds;
+}
+
+/** The same alarms of the same stream as one, in the order of the newest of each. */
+export function groupsOf(alarms: readonly Alarm[]): readonly AlarmGroup[] {
+  const groups = new Map<string, Alarm[]>();
+  for (const alarm of alarms) {
+    const key = `${alarm.code} ${alarm.stream ?? ""}`;
+    groups.set(key, [...(groups.get(key) ?? []), alarm]);
+  }
+  return [...groups.values()]
+    .map((alike) => {
+      const ordered = alike.toSorted((a, b) => Date.parse(b.since) - Date.parse(a.since));
+      const [newest, ...earlier] = ordered as [Alarm, ...Alarm[]];
+      const lastedMs = ordered.reduce(
+        (sum, { since, cleared_at }) =>
+          cleared_at === null ? sum : sum + Date.parse(cleared_at) - Date.parse(since),
+        0,
+      );
+      const since = earlier.at(-1)?.since ?? newest.since;
+      return { newest, count: ordered.length, since, lasted: seconds(lastedMs / 1000) };
+    })
+    .toSorted((a, b) => Date.parse(b.newest.since) - Date.parse(a.newest.since));
+}
+
 /**
  * The alarm to show: the newest of the most severe ones that is not acknowledged. An acknowledged
  * alarm still precedes any less severe one.
@@ -110,6 +143,8 @@ export function amount(alarm: ShownAlarm, language: string): string | null {
   const { value, unit, code } = alarm;
   if (value === null || code === "jump") return null;
   if (code === "gap") return `${number(value, language, 2)} s`;
+  // Where two are needed, 1.8 is not "2".
+  if (code === "too_slow") return `${number(value, language, 1)} Hz`;
   if (unit === "s") return value < 60 ? `${Math.floor(value)} s` : clockFace(seconds(value));
   if (code === "clock_uncertain") return `± ${number(value, language, 0)} ms`;
   return unit === null ? number(value, language, 0) : `${number(value, language, 0)} ${unit}`;

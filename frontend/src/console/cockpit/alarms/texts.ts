@@ -43,6 +43,8 @@ export const alarmsEn = {
   "alarm.severity.info": "Note",
   "alarm.severity.warning": "Warning",
   "alarm.severity.critical": "Critical",
+  "alarm.times_one": "{{count}} time, last at {{time}}",
+  "alarm.times_other": "{{count}} times, last at {{time}}",
   "alarm.still": "still active",
 };
 
@@ -89,5 +91,7 @@ export const alarmsDe: Readonly<Record<keyof typeof alarmsEn, string>> = {
   "alarm.severity.info": "Hinweis",
   "alarm.severity.warning": "Warnung",
   "alarm.severity.critical": "Kritisch",
+  "alarm.times_one": "{{count}}-mal, zuletzt um {{time}}",
+  "alarm.times_other": "{{count}}-mal, zuletzt um {{time}}",
   "alarm.still": "noch aktiv",
 };
