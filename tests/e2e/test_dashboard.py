@@ -27,7 +27,7 @@ def test_figures_are_filtered_by_the_url_and_saved(
 ) -> None:
     """A filter in the URL selects the figures, which can be saved as pictures and as rows.
 
-    Statistics and the preregistration then show the same kind of data.
+    Statistics, the preregistration and the summary then show the same kind of data.
     """
     database = open_database(f"sqlite:///{live_server.data_dir / 'reembody.sqlite'}")
     with database.writing() as db:
@@ -85,3 +85,13 @@ def test_figures_are_filtered_by_the_url_and_saved(
     page.emulate_media(color_scheme="light")
     assert axe(page) == []
     screenshot(page, "preregistration")
+
+    page.get_by_role("link", name="Summary", exact=True).click()
+    expect(page.get_by_role("heading", name="Deviations")).to_be_visible(timeout=PATIENCE_MS)
+    expect(page.get_by_role("region", name="Summary")).to_contain_text("3 of 12 planned")
+    glance = page.get_by_role("region", name="At a glance")
+    glance.get_by_role("button", name="Agency").click()
+    expect(page.get_by_role("heading", name="Agency", exact=True)).to_be_in_viewport(
+        timeout=PATIENCE_MS
+    )
+    expect(page.locator("details[open]").first).to_be_visible()

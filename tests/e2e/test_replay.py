@@ -14,6 +14,8 @@ from tests.features.latency_builders import HISTORY_S, store_movement
 from tests.features.record.headset.site import Site
 
 DURATION_S = 12.0
+EBML = b"\x1a\x45\xdf\xa3"
+"""How every WebM file begins (RFC 8794, section 11.2.1)."""
 
 
 @pytest.fixture
@@ -44,7 +46,7 @@ def test_a_replay_is_synchronised_with_its_events(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """A replay wears its body, remembers its camera, and a link reopens a moment or two."""
+    """A replay wears its body, remembers its camera, reopens at a moment by link, is filmed."""
     first, second = phases
     url = headset_site.server.url
     page = page_factory()
@@ -89,3 +91,9 @@ def test_a_replay_is_synchronised_with_its_events(
     for canvas in page.locator("canvas").all():
         expect(canvas).to_have_attribute("data-frame", "105")
     assert axe(page) == []
+    page.get_by_role("button", name="Record a video from this moment").click()
+    expect(times).not_to_have_attribute("data-time", "3.500")
+    with page.expect_download() as film:
+        page.get_by_role("button", name="Stop and save").click()
+    assert film.value.suggested_filename.endswith(".webm")
+    assert film.value.path().read_bytes().startswith(EBML)

@@ -58,7 +58,8 @@ export function DeclarationCard({
   );
 }
 
-function Primary({
+/** The preregistered test in words: test, measure, limb, direction. */
+export function Primary({
   primary,
 }: {
   readonly primary: Declaration["section"]["primary"];

@@ -36,8 +36,7 @@ BANDS = (
     "Lines are means over participants, bands their 95 % confidence intervals (t distribution), "
     "computed for each step."
 )
-ROOM = 1.18
-"""The x axis ends so much later than the lines, for their labels."""
+LABEL_MARGIN_PX = 60
 _KEYS = ["limb", "latency_ms", "begin_active_s", "end_active_s"]
 _NAMES = (*_KEYS, "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
 
@@ -91,10 +90,10 @@ def _figure(data: pd.DataFrame) -> go.Figure:
         label_line_ends(
             figure, _ends(latencies, owns), top=float(data["mean_deg"].max()), column=column
         )
-    # The lines are labelled at their ends, to the right of which is room for it.
-    figure.update_layout(showlegend=False)
+    # The lines are labelled at their ends, beside the panels.
+    figure.update_layout(showlegend=False, margin={"r": LABEL_MARGIN_PX})
     figure.update_xaxes(
-        title_text="active time (s)", range=[0.0, ROOM * float(data["end_active_s"].max())]
+        title_text="active time (s)", range=[0.0, float(data["end_active_s"].max())]
     )
     figure.update_yaxes(rangemode="tozero")
     figure.update_yaxes(title_text="mean joint error (deg)", row=1, col=1)

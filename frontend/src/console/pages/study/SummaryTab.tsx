@@ -20,6 +20,7 @@ import type { JSX } from "react";
 import { Link, useLocation } from "wouter";
 import { useTexts } from "../../i18n";
 import { PrimaryResultBox } from "../../preregistration/AnalysisCard";
+import { Primary } from "../../preregistration/DeclarationCard";
 import { Deviations } from "../../preregistration/PreregistrationTab";
 import { dashboardQuery, preregistrationQuery, statisticsQuery } from "../../queries";
 import { useKind } from "../../ui/chosenKind";
@@ -182,7 +183,12 @@ function MainTest({ view }: { readonly view: Preregistration }): JSX.Element {
           {view.why_no_result}
         </Notice>
       ) : (
-        <PrimaryResultBox result={result} alpha={declaration.alpha} />
+        <>
+          <p className={classes.text}>
+            <Primary primary={declaration.section.primary} />
+          </p>
+          <PrimaryResultBox result={result} alpha={declaration.alpha} />
+        </>
       )}
     </Paper>
   );
