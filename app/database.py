@@ -20,12 +20,12 @@ import sqlite3
 import threading
 import time
 from collections import deque
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar, cast
 
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
@@ -49,6 +49,10 @@ NAMING_CONVENTION = {
 }
 TURN_TIMEOUT_S = 20.0
 """How long a request waits for other writers of this process before it is told to retry."""
+MOST_TOGETHER = 64
+"""How many writes may share a commit, so that other writers of the process get their turns."""
+ON_COMMIT = "on_commit"
+"""The key in `Session.info` of what to do once the commit that a session shares is on disk."""
 WRITERS = 20
 """Maximum number of writers on PostgreSQL: half of the threads that endpoints run on."""
 Result = TypeVar("Result")
@@ -193,6 +197,17 @@ class CommitCount:
     copying: threading.Lock = field(default_factory=threading.Lock)
 
 
+@dataclass(eq=False)
+class Waiting:
+    """A write that waits for its turn until `late_s`, by the monotonic clock, and its outcome."""
+
+    work: Callable[[Session], Any]
+    late_s: float
+    result: Any = None
+    error: Exception | None = None
+    done: bool = False
+
+
 @dataclass(frozen=True)
 class Database:
     """A database engine, used through `reading()` and `writing()`."""
@@ -202,6 +217,7 @@ class Database:
     commits: CommitCount = field(default_factory=CommitCount)
     _write_lock: FairLock = field(default_factory=FairLock)
     _queue: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "writes"))
+    _waiting: deque[Waiting] = field(default_factory=deque)
     _waiting_room: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(1000))
     _writers: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(WRITERS))
 
@@ -251,22 +267,76 @@ class Database:
     async def write(self, work: Callable[[Session], Result]) -> Result:
         """Run `work` in a writing transaction on one thread, which also waits and commits.
 
-        For writes that arrive in large numbers: on SQLite they queue for one thread, which goes
-        from commit to commit. `work` gets the session and must not wait for anything else. Raises
-        NotDurable if its turn does not come in time.
+        For writes that arrive in large numbers. On SQLite those that wait for the same turn share
+        one commit, and so one flush of the disk: each has a savepoint of its own, so one that
+        raises is undone alone, and none returns before the commit is on disk. PostgreSQL flushes
+        once for all transactions that commit at the same time, so there each has its own. `work`
+        gets the session and must not wait for anything else; it is called again, by itself, if the
+        database refused the shared transaction. Raises NotDurable if its turn does not come in
+        time.
         """
         if not self.is_sqlite:
             return await run_sync(self._in_transaction, work, limiter=self._writers)
-        late_s = time.monotonic() + TURN_TIMEOUT_S
+        waiting = Waiting(work, time.monotonic() + TURN_TIMEOUT_S)
+        self._waiting.append(waiting)
+        await asyncio.get_running_loop().run_in_executor(self._queue, self._write_until, waiting)
+        if waiting.error is not None:
+            raise waiting.error
+        return cast("Result", waiting.result)
 
-        def in_turn() -> Result:
-            self._take_turn(late_s - time.monotonic())
+    def _write_until(self, last: Waiting) -> None:
+        """Write what waits, in batches, until `last` is done; an earlier call may have done it."""
+        while not last.done:
+            first = self._waiting[0]
             try:
-                return self._in_transaction(work)
+                self._take_turn(first.late_s - time.monotonic())
+            except NotDurable as error:
+                self._waiting.popleft()
+                first.error, first.done = error, True
+                continue
+            try:
+                self._write_batch()
             finally:
                 self._write_lock.release()
 
-        return await asyncio.get_running_loop().run_in_executor(self._queue, in_turn)
+    def _write_batch(self) -> None:
+        """Write what waits by now that it is the turn of this thread."""
+        batch = [self._waiting.popleft() for _ in range(min(len(self._waiting), MOST_TOGETHER))]
+        try:
+            if len(batch) == 1 or not self._written_together(batch):
+                for one in batch:
+                    self._write_alone(one)
+        finally:
+            for one in batch:
+                one.done = True
+
+    def _write_alone(self, one: Waiting) -> None:
+        try:
+            one.result, one.error = self._in_transaction(one.work), None
+        except Exception as error:  # noqa: BLE001 - raised again where it is awaited
+            one.error = error
+
+    def _written_together(self, batch: Sequence[Waiting]) -> bool:
+        """Commit a batch; return False, with nothing stored, if the database refused any of it.
+
+        Many refusals, such as that of a full disk, end the whole transaction and not only the
+        savepoint. Everything is then tried again one after the other, so that only those fail which
+        have to, each with its own reason.
+        """
+        actions: list[Callable[[], None]] = []
+        try:
+            engine = self.engine.execution_options(reembody_writes=True)
+            with engine.connect() as connection, connection.begin():
+                for one in batch:
+                    _run_at_savepoint(connection, one, actions)
+                changes = has_changes(connection)
+        except Exception:  # noqa: BLE001 - each is tried again alone, and then says why
+            return False
+        if changes:
+            self._note_commit()
+        for action in actions:
+            action()
+        return True
 
     def _in_transaction(self, work: Callable[[Session], Result]) -> Result:
         with self._observed(), self._writer() as session:
@@ -304,13 +374,25 @@ class Database:
 
     def _commit(self, session: Session) -> None:
         session.flush()
-        changes = session.in_transaction() and has_changes(session.connection())
-        session.commit()
+        if not session.in_transaction():
+            session.commit()
+            return
+        connection = session.connection()
+        changes = has_changes(connection)
+        try:
+            session.commit()
+        except DatabaseError:
+            # SQLite may leave the transaction open, and the pool would lend it to the next request.
+            connection.invalidate()
+            raise
         # A commit without changes does not show whether the disk can be written.
         if changes:
-            self.commits.number += 1
-            if self.observer is not None:
-                self.observer.succeeded()
+            self._note_commit()
+
+    def _note_commit(self) -> None:
+        self.commits.number += 1
+        if self.observer is not None:
+            self.observer.succeeded()
 
     @contextmanager
     def _observed(self) -> Iterator[None]:
@@ -325,6 +407,42 @@ class Database:
         """Close the writing thread and every pooled connection."""
         self._queue.shutdown()
         self.engine.dispose()
+
+
+def after_commit(db: Session, action: Callable[[], None]) -> None:
+    """Run `action` once this transaction is on disk, or never if it is rolled back."""
+
+    def run(session: Session) -> None:
+        # SQLAlchemy also reports the release of a savepoint as a commit, yet nothing is on disk.
+        if session.in_nested_transaction():
+            return
+        shared: list[Callable[[], None]] | None = session.info.get(ON_COMMIT)
+        if shared is None:
+            action()
+        else:
+            shared.append(action)
+
+    event.listen(db, "after_commit", run)
+
+
+def _run_at_savepoint(
+    connection: Connection, one: Waiting, actions: list[Callable[[], None]]
+) -> None:
+    """Run one write of a batch, and undo it alone if it raises; raise only DatabaseError."""
+    with Session(
+        connection,
+        expire_on_commit=False,
+        join_transaction_mode="create_savepoint",
+        info={ON_COMMIT: actions},
+    ) as session:
+        try:
+            one.result = one.work(session)
+            session.commit()
+        except DatabaseError:
+            raise
+        except Exception as error:  # noqa: BLE001 - raised again where it is awaited
+            session.rollback()
+            one.error = error
 
 
 def make_engine(url: str, *, pooled: bool = True) -> Engine:

@@ -45,6 +45,7 @@ from app.features.record.road.endpoints import router as road
 from app.features.record.self_tests.endpoints import router as self_tests
 from app.features.record.suggestions.endpoints import router as suggestions
 from app.features.record.tablet.endpoints import calls
+from app.features.record.tablet.endpoints import direct as direct_to_tablets
 from app.features.record.tablet.endpoints import router as tablet
 from app.features.record.tryout.endpoints import router as tryout
 from app.features.results.analysis.endpoints import router as analysis
@@ -113,6 +114,7 @@ def add_routes(app: FastAPI) -> None:
     They belong to no application: the one that serves them is in a request's scope, so a process
     builds them once, however many applications it makes.
     """
+    app.router.routes[:0] = direct_to_tablets
     app.router.routes.extend(_routes())
 
 

@@ -7,14 +7,15 @@ this: it is in the database before anything is published.
 
 import asyncio
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import event
 from sqlalchemy.orm import Session
+
+from app.database import after_commit
 
 
 @dataclass(eq=False)
@@ -193,14 +194,3 @@ class Hub:
         """Return whether the session has an open headset socket."""
         with self._lock:
             return session_id in self._headsets
-
-
-def after_commit(db: Session, action: Callable[[], None]) -> None:
-    """Run `action` once this transaction is on disk, or never if it is rolled back."""
-
-    def run(session: Session) -> None:
-        # SQLAlchemy also reports the release of a savepoint as a commit, yet nothing is on disk.
-        if not session.in_nested_transaction():
-            action()
-
-    event.listen(db, "after_commit", run)

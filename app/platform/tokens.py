@@ -105,4 +105,5 @@ def delete_cookie(request: Request, response: Response, name: str) -> None:
 
 
 def _is_secure(request: HTTPConnection) -> bool:
-    return request.url.scheme in ("https", "wss")
+    # The whole address would be put together first for `request.url`, several times a request.
+    return request.scope.get("scheme") in ("https", "wss")

@@ -23,10 +23,11 @@ import { STATE_KEY } from "./useTabletState";
 interface ScreensProps {
   readonly state: TabletState;
   readonly connected: boolean;
+  readonly show: (next: TabletState) => void;
   readonly refresh: () => void;
 }
 
-export function Screens({ state, connected, refresh }: ScreensProps): JSX.Element {
+export function Screens({ state, connected, show, refresh }: ScreensProps): JSX.Element {
   const { t, setLanguage, language } = useTexts();
   const refusal = useRefusal(state);
   const content = useFocusOnNewScreen(state, refusal);
@@ -53,7 +54,7 @@ export function Screens({ state, connected, refresh }: ScreensProps): JSX.Elemen
         </div>
       </header>
       <main className={classes.content} ref={content} tabIndex={-1}>
-        <Screen state={state} connected={connected} refresh={refresh} refusal={refusal} />
+        <Screen {...{ state, connected, show, refresh, refusal }} />
       </main>
     </div>
   );
@@ -85,7 +86,7 @@ interface ScreenProps extends ScreensProps {
   readonly refusal: Refusal;
 }
 
-function Screen({ state, connected, refresh, refusal }: ScreenProps): JSX.Element {
+function Screen({ state, connected, show, refresh, refusal }: ScreenProps): JSX.Element {
   if (isRefused(state, refusal)) return <Refused connected={connected} refusal={refusal} />;
   const refuse = () => refusal.setRefused(true);
   switch (state.screen) {
@@ -109,6 +110,7 @@ function Screen({ state, connected, refresh, refusal }: ScreenProps): JSX.Elemen
           key={state.administration.key}
           state={state}
           administration={state.administration}
+          show={show}
           refresh={refresh}
         />
       );

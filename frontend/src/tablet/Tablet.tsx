@@ -39,6 +39,7 @@ export function Tablet(): JSX.Element {
       <Screens
         state={data}
         connected={state.connected}
+        show={state.show}
         refresh={() => void state.query.refetch()}
       />
     );

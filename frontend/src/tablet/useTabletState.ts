@@ -7,7 +7,7 @@ import { type FeedState, openFeed } from "@shared/api/live";
 import { ApiError, isUnauthorised } from "@shared/api/request";
 import type { TabletState } from "@shared/api/types";
 import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-query";
-import { useEffect, useState } from "react";
+import { useCallback, useEffect, useState } from "react";
 import { drafts } from "./drafts/useStored";
 
 export const STATE_KEY = ["tablet", "state"] as const;
@@ -29,6 +29,12 @@ export function useTabletState() {
   });
   useStoredScreen(query, queries);
   const paired = query.data !== undefined && query.error === null;
+  const show = useCallback(
+    (state: TabletState) => {
+      queries.setQueryData<TabletState>(STATE_KEY, (previous) => newer(previous, state));
+    },
+    [queries],
+  );
   useEffect(() => {
     if (!paired) return;
     return openFeed({
@@ -39,14 +45,11 @@ export function useTabletState() {
         if (state === "lost") void queries.invalidateQueries({ queryKey: STATE_KEY });
       },
       on: {
-        state: (data) =>
-          queries.setQueryData<TabletState>(STATE_KEY, (previous) =>
-            newer(previous, data as TabletState),
-          ),
+        state: (data) => show(data as TabletState),
       },
     });
-  }, [paired, queries]);
-  return { query, connected: paired && feed !== "lost" };
+  }, [paired, queries, show]);
+  return { query, show, connected: paired && feed !== "lost" };
 }
 
 /**

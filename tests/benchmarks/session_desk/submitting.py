@@ -1,8 +1,8 @@
 """Simulate tablets: `python -m tests.benchmarks.session_desk.submitting`.
 
 Reads the plan as JSON from standard input and prints how long every submission took, and the total.
-A tablet sends a form, fetches the next one, and so on, without a pause: a room full of people does
-that only in the worst second of the day.
+A tablet sends a form, gets the next one, and so on. A room full of people does that without a pause
+only in the worst second of the day.
 """
 
 import asyncio
@@ -24,7 +24,8 @@ OK, MOVED = 200, (302, 303, 307)
 class Plan:
     """The plan of a run: the tablets and the forms that they submit.
 
-    `who`: a tablet's cookie header (ours), or a participant's first path (oTree).
+    `who`: a tablet's cookie header (ours), or a participant's first path (oTree). `thinking_s`: how
+    long people take for a form; 0 if they send without a pause.
     """
 
     server: Literal["ours", "otree"]
@@ -32,6 +33,7 @@ class Plan:
     who: tuple[str, ...]
     forms: int
     items: int
+    thinking_s: float = 0.0
 
     def as_json(self) -> str:
         """Return the plan as one line of JSON."""
@@ -52,15 +54,16 @@ class Refused(RuntimeError):
 
 
 async def our_tablet(plan: Plan, cookie: str) -> list[float]:
-    """Submit forms as the product's page does: request the state, then send the answers."""
+    """Submit forms as the product's page does: every answer to a form has the next one."""
     http, took_s = LeanHttp(plan.port, {"cookie": cookie}), []
+    state = json.loads(_good(await http.ask("GET", "/api/tablet/state"), OK).body)
     for _ in range(plan.forms):
-        state = json.loads(_good(await http.ask("GET", "/api/tablet/state"), OK).body)
+        await asyncio.sleep(plan.thinking_s)
         body = json.dumps(_answers(state["administration"])).encode()
         began_s = time.perf_counter()
         answer = await http.ask("POST", "/api/tablet/submissions", body)
         took_s.append(time.perf_counter() - began_s)
-        _good(answer, OK)
+        state = json.loads(_good(answer, OK).body)["state"]
     await http.close()
     return took_s
 

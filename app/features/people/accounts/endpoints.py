@@ -3,6 +3,7 @@
 from fastapi import APIRouter, Request, Response
 from sqlalchemy.orm import Session
 
+from app.database import after_commit
 from app.errors import Busy, NotAllowed, NotSignedIn, TooManyAttempts
 from app.features.people.accounts.passwords import hash_password, require_good
 from app.features.people.accounts.people import account_by_id, end_logins
@@ -32,7 +33,6 @@ from app.platform.dependencies import (
     SignedIn,
     signed_in_caller,
 )
-from app.platform.hub import after_commit
 from app.platform.rate_limit import network_of
 from app.platform.tokens import delete_cookie, hash_token, read_cookie, set_cookie
 

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Request, Response
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.database import after_commit
 from app.features.people.accounts.endpoints import open_login
 from app.features.people.accounts.invitations import (
     accept,
@@ -42,7 +43,6 @@ from app.features.people.accounts.schemas import (
 from app.features.people.audit import record
 from app.models import Account, Invitation, Study
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
-from app.platform.hub import after_commit
 from app.platform.rate_limit import network_of
 
 router = APIRouter(tags=["accounts"])

@@ -3,13 +3,15 @@
 import asyncio
 from collections.abc import AsyncIterator
 
+from anyio.to_thread import run_sync
 from fastapi import APIRouter, Request, Response
 from fastapi.sse import EventSourceResponse, ServerSentEvent
+from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotSignedIn
 from app.features.record.doubts import judge_with_doubts
-from app.features.record.questionnaires import Receipt, SubmissionRequest, submit
+from app.features.record.questionnaires import SubmissionRequest, submit
 from app.features.record.sessions import (
     AskQuestion,
     CloseQuestion,
@@ -26,6 +28,7 @@ from app.features.record.sessions import (
 )
 from app.features.record.tablet.schemas import (
     Acknowledgement,
+    FormStored,
     HelpWish,
     LanguageChoice,
     RefusalWish,
@@ -33,11 +36,13 @@ from app.features.record.tablet.schemas import (
     TabletState,
 )
 from app.features.record.tablet.service import may_ask, note_help, tablet_state
+from app.lan import STRANGER
 from app.models import Device, StudySession
 from app.platform.access import session_by_id
 from app.platform.admission import TABLET_COOKIE, bearer_token
 from app.platform.context import AppContext
 from app.platform.dependencies import (
+    API_PREFIX,
     Context,
     PairedTablet,
     SignedIn,
@@ -45,6 +50,7 @@ from app.platform.dependencies import (
     tablet_in,
     write,
 )
+from app.platform.direct_routes import DirectRoute, is_json, json_response
 from app.platform.tokens import device_of_token, read_cookie
 from app.protocol import STEP_KINDS, Step
 
@@ -191,14 +197,45 @@ def _complete(
 @router.post("/submissions")
 async def post_submission(
     request: Request, form: SubmissionRequest, context: Context, _: PairedTablet
-) -> Receipt:
-    """Store a filled-in form; it can be resent any number of times under the same key."""
+) -> FormStored:
+    """Store a filled-in form; it can be resent any number of times under the same key.
 
-    def store(db: Session) -> Receipt:
-        # Check again: the tablet may have been unpaired while the form waited for the transaction.
+    The answer has the next screen, so that the tablet need not ask for it.
+    """
+    return await _stored(request, context, form)
+
+
+async def _answer_submission(request: Request) -> Response | None:
+    """Store a form from a known device that is valid; leave all others to `post_submission`."""
+    if STRANGER in request.scope or not is_json(request):
+        return None
+    try:
+        form = SubmissionRequest.model_validate_json(await request.body())
+    except ValidationError:
+        return None
+    stored = await _stored(request, request.app.state.context, form)
+    return json_response(stored.model_dump_json())
+
+
+async def _answer_state(request: Request) -> Response:
+    """Answer like `get_state`."""
+    return await run_sync(get_state, request, request.app.state.context)
+
+
+direct = (
+    DirectRoute("POST", f"{API_PREFIX}{router.prefix}/submissions", _answer_submission),
+    DirectRoute("GET", f"{API_PREFIX}{router.prefix}/state", _answer_state),
+)
+"""The calls that come from all tablets at once when a form ends."""
+
+
+async def _stored(request: Request, context: AppContext, form: SubmissionRequest) -> FormStored:
+    def store(db: Session) -> FormStored:
+        # The tablet may have been unpaired while the form waited for the transaction.
         tablet = tablet_in(db, request, context)
         session = session_by_id(db, tablet.session_id, lock=True)
-        return submit(db, context, session, form, mode="tablet", actor=f"tablet:{tablet.id}")
+        receipt = submit(db, context, session, form, mode="tablet", actor=f"tablet:{tablet.id}")
+        return FormStored(**dict(receipt), state=tablet_state(db, session))
 
     return await write(context, store)
 

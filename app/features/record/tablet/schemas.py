@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.features.record.questionnaires import Administration
+from app.features.record.questionnaires import Administration, Receipt
 from app.features.record.sessions import ConsentForm
 
 Screen = Literal[
@@ -47,6 +47,12 @@ class TabletState(BaseModel):
     help_asked: bool = False
     question_asked: bool = False
     is_refused: bool = False
+
+
+class FormStored(Receipt):
+    """The receipt of a form that the tablet sent, with the screen that it should show next."""
+
+    state: TabletState
 
 
 class Acknowledgement(BaseModel):

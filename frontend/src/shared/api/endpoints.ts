@@ -11,6 +11,7 @@ import type {
   CodebookColumn,
   Command,
   Device,
+  FormStored,
   Kind,
   Ledger,
   Network,
@@ -139,7 +140,7 @@ export const tablet = {
   setLanguage: (language: string) =>
     answer<TabletState>(server.PUT("/api/tablet/language", { body: { language } })),
   submit: (submission: Submission) =>
-    answer<Receipt>(server.POST("/api/tablet/submissions", { body: submission })),
+    answer<FormStored>(server.POST("/api/tablet/submissions", { body: submission })),
   help: (isCalling: boolean) =>
     answer<TabletState>(server.PUT("/api/tablet/help", { body: { asked: isCalling } })),
   question: (isAsked: boolean) =>

@@ -2811,6 +2811,8 @@ export interface paths {
         /**
          * Post Submission
          * @description Store a filled-in form; it can be resent any number of times under the same key.
+         *
+         *     The answer has the next screen, so that the tablet need not ask for it.
          */
         readonly post: operations["post_submission_api_tablet_submissions_post"];
         readonly delete?: never;
@@ -6511,6 +6513,22 @@ export interface components {
             readonly scores: {
                 readonly [key: string]: number | null;
             };
+        };
+        /**
+         * FormStored
+         * @description The receipt of a form that the tablet sent, with the screen that it should show next.
+         */
+        readonly FormStored: {
+            /** Duplicate */
+            readonly duplicate: boolean;
+            /** Receipt Id */
+            readonly receipt_id: string;
+            readonly state: components["schemas"]["TabletState"];
+            /**
+             * Stored At
+             * Format: date-time
+             */
+            readonly stored_at: string;
         };
         /**
          * FormulaView
@@ -18935,7 +18953,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["Receipt"];
+                    readonly "application/json": components["schemas"]["FormStored"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

@@ -265,6 +265,7 @@ export type TabletState = With<Schemas["TabletState"], { administration: Adminis
 export type Answer = string | number | boolean | null;
 export type Submission = Schemas["SubmissionRequest"];
 export type Receipt = Schemas["Receipt"];
+export type FormStored = With<Schemas["FormStored"], { state: TabletState }>;
 
 export type FigureSpec = Schemas["FigureView"];
 export type CodebookColumn = Schemas["ColumnView"];

@@ -1,7 +1,13 @@
 /** One form on this tablet: its draft, and its delivery until the server has stored it. */
 import { tablet } from "@shared/api/endpoints";
 import type { ApiError } from "@shared/api/request";
-import type { Administration, Answer, Submission, TabletState } from "@shared/api/types";
+import type {
+  Administration,
+  Answer,
+  FormStored,
+  Submission,
+  TabletState,
+} from "@shared/api/types";
 import { deliver } from "@shared/forms/deliver";
 import type { FormDraft } from "@shared/forms/draft";
 import { type StoredForm, submissionOf } from "@shared/forms/storedForms";
@@ -29,26 +35,37 @@ interface StoredFormHandle {
 }
 
 /**
- * Keep a form's draft on disk and deliver it; `onSettled` is called when the screen may have
- * changed: stored, superseded, withdrawn or unpaired.
+ * Keep a form's draft on disk and deliver it.
+ *
+ * `onStored` gets the screen that the server answers a stored form with; `onSettled` is called when
+ * the screen may have changed without such an answer: superseded, withdrawn, unpaired, or sent by
+ * the sweep.
  */
 export function useStoredForm(
   sessionId: string,
   administration: Administration,
   language: string,
+  onStored: (next: TabletState) => void,
   onSettled: () => void,
 ): StoredFormHandle {
   const [phase, setPhase] = useState<FormPhase>({ name: "opening" });
   const timer = useRef<ReturnType<typeof setTimeout>>(undefined);
   const form = useRef<StoredForm | null>(null);
+  const stored = useRef(onStored);
   const settled = useRef(onSettled);
   useEffect(() => {
+    stored.current = onStored;
     settled.current = onSettled;
   });
 
   const attempt = useCallback(async (id: string, submission: Submission) => {
     clearTimeout(timer.current);
-    const delivery = await deliver(drafts, id, submission, tablet.submit);
+    let next: FormStored["state"] | undefined;
+    const delivery = await deliver(drafts, id, submission, async (form) => {
+      const receipt = await tablet.submit(form);
+      next = receipt.state;
+      return receipt;
+    });
     switch (delivery.kind) {
       case "later":
         setPhase({ name: "sending", offline: true });
@@ -65,7 +82,8 @@ export function useStoredForm(
       case "superseded":
       case "withdrawn":
         setPhase({ name: "done" });
-        settled.current();
+        if (next === undefined) settled.current();
+        else stored.current(next);
         return;
       case "unpaired":
         settled.current();

@@ -13,13 +13,14 @@ import classes from "./screens.module.css";
 interface FormScreenProps {
   readonly state: TabletState;
   readonly administration: Administration;
+  readonly show: (next: TabletState) => void;
   readonly refresh: () => void;
 }
 
-export function FormScreen({ state, administration, refresh }: FormScreenProps): JSX.Element {
+export function FormScreen({ state, administration, show, refresh }: FormScreenProps): JSX.Element {
   const { t } = useTexts();
   const texts = formTexts(t);
-  const form = useStoredForm(state.session_id, administration, state.language, refresh);
+  const form = useStoredForm(state.session_id, administration, state.language, show, refresh);
   const { phase } = form;
   if (phase.name !== "filling") return <FormStatus phase={phase} retry={form.retry} />;
   return (

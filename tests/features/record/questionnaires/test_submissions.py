@@ -1,5 +1,6 @@
 """Tests that forms are stored once and scored by their instrument."""
 
+import json
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -167,8 +168,28 @@ def test_a_repeated_form_step_stores_a_second_form(
 def test_a_late_copy_of_a_stored_form_still_gets_its_receipt(
     lab: Lab, session_id: str, tablet: TestClient
 ) -> None:
-    """A form that is resent after the session has ended still gets its first receipt."""
+    """A form resent after the session's end gets its first receipt, with the present screen."""
     body = filled(due(tablet))
     first = ok(send(tablet, body))
     lab.command(lab.view(session_id), "abort", reason="fire alarm")
-    assert ok(send(tablet, body)) == {**first, "duplicate": True}
+    screen = ok(tablet.get("/api/tablet/state"))
+    assert screen["screen"] == "finished"
+    assert ok(send(tablet, body)) == {**first, "duplicate": True, "state": screen}
+
+
+def test_the_answer_to_a_form_has_the_next_screen(session_id: str, tablet: TestClient) -> None:
+    """The answer to a stored form has the screen that the tablet would get by asking."""
+    stored_form = ok(send(tablet, filled(due(tablet))))
+    assert stored_form["state"] == ok(tablet.get("/api/tablet/state"))
+
+
+@pytest.mark.one_engine
+def test_a_form_that_is_sent_in_another_way_is_stored_alike(
+    session_id: str, tablet: TestClient
+) -> None:
+    """A content type in an unusual spelling, which the direct route leaves alone, is accepted."""
+    headers = {"content-type": "application/json; charset=UTF-8"}
+    text = json.dumps(filled(due(tablet)))
+    first = ok(tablet.post("/api/tablet/submissions", content=text, headers=headers))
+    again = ok(tablet.post("/api/tablet/submissions", json=json.loads(text)))
+    assert again == {**first, "duplicate": True}
