@@ -1,5 +1,6 @@
 """Browser tests of figures and statistical tests, which a URL filters and files save."""
 
+import re
 from collections.abc import Callable
 
 from playwright.sync_api import Page, expect
@@ -55,7 +56,7 @@ def test_figures_are_filtered_by_the_url_and_saved(
 
     page.get_by_role("link", name="Statistics", exact=True).click()
     # Participants are of one page, the kind of data is of all of them, also when it is reloaded.
-    assert "participant=" not in page.url
+    expect(page).not_to_have_url(re.compile("participant="))
     page.reload()
     expect(page.get_by_role("heading", name="Agency", exact=True)).to_be_visible(
         timeout=PATIENCE_MS

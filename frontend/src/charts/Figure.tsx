@@ -67,7 +67,13 @@ function useIsNear(root: RefObject<HTMLElement | null>, lazy: boolean): boolean 
       { rootMargin: AHEAD },
     );
     watch.observe(element);
-    return () => watch.disconnect();
+    // On paper every figure is near.
+    const onPrint = () => setIsNear(true);
+    window.addEventListener("beforeprint", onPrint);
+    return () => {
+      watch.disconnect();
+      window.removeEventListener("beforeprint", onPrint);
+    };
   }, [root, isNear]);
   return isNear;
 }

@@ -13,6 +13,7 @@ from scipy.special import stdtrit
 from app.features.results.analysis.figures.theme import (
     BLUE,
     CALM,
+    NO_LEGEND_PX,
     VERMILLION,
     latency_axis,
     new_figure,
@@ -132,7 +133,7 @@ def latency_figure(
         if alike:
             figure.layout.annotations[column - 1].text += f", n = {numbers[0]}"
     # Panels, lines and shapes are named where they are, and by the caption.
-    figure.update_layout(showlegend=False)
+    figure.update_layout(showlegend=False, margin={"b": NO_LEGEND_PX})
     figure.update_xaxes(title_font_size=13, tickangle=0)
     figure.update_yaxes(title_text=axis, row=1, col=1)
     if limits is not None:

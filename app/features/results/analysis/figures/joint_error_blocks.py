@@ -19,6 +19,7 @@ from app.features.results.analysis.figures.joint_errors import (
 )
 from app.features.results.analysis.figures.theme import (
     COLOURS,
+    NO_LEGEND_PX,
     LineEnd,
     label_line_ends,
     latency_line,
@@ -74,7 +75,7 @@ def _figure(data: pd.DataFrame) -> go.Figure:
         )
     blocks = sorted(data["block"].unique().tolist())
     # The lines are labelled at their ends, to the right of which is room for it.
-    figure.update_layout(showlegend=False)
+    figure.update_layout(showlegend=False, margin={"b": NO_LEGEND_PX})
     figure.update_xaxes(
         title_text="block (1 = first)",
         tickvals=blocks,

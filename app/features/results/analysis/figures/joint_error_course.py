@@ -17,6 +17,7 @@ from app.features.results.analysis.figures.drawing import (
 from app.features.results.analysis.figures.joint_errors import HINGES
 from app.features.results.analysis.figures.theme import (
     COLOURS,
+    NO_LEGEND_PX,
     LineEnd,
     label_line_ends,
     latency_line,
@@ -91,7 +92,7 @@ def _figure(data: pd.DataFrame) -> go.Figure:
             figure, _ends(latencies, owns), top=float(data["mean_deg"].max()), column=column
         )
     # The lines are labelled at their ends, beside the panels.
-    figure.update_layout(showlegend=False, margin={"r": LABEL_MARGIN_PX})
+    figure.update_layout(showlegend=False, margin={"r": LABEL_MARGIN_PX, "b": NO_LEGEND_PX})
     figure.update_xaxes(
         title_text="active time (s)", range=[0.0, float(data["end_active_s"].max())]
     )

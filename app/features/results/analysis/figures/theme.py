@@ -104,6 +104,8 @@ class LineEnd:
     colour: str
 
 
+NO_LEGEND_PX = 56
+"""Below a plot whose lines are labelled where they are."""
 PLOT_PX = 240.0
 """About the height of a plot, to tell which labels would cover each other."""
 LABEL_PX = 15.0

@@ -95,9 +95,11 @@ export function FilterBar({ filter, choices, onChange }: FilterBarProps): JSX.El
           }))}
         />
       </div>
-      <Button size="xs" variant="subtle" onClick={() => onChange(none)}>
-        {t("figures.clear")}
-      </Button>
+      {JSON.stringify(none) !== JSON.stringify(filter) && (
+        <Button size="xs" variant="subtle" onClick={() => onChange(none)}>
+          {t("figures.clear")}
+        </Button>
+      )}
     </fieldset>
   );
 }
