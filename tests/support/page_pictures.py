@@ -1,4 +1,4 @@
-"""Generate docs/pages.md: every page with a screenshot that the browser tests took.
+"""Generate docs/pages.md, and the pictures of other documents, from the browser tests' shots.
 
     REEMBODY_SCREENSHOTS=FOLDER ./run test -m browser tests/e2e
 
@@ -31,6 +31,18 @@ class Page:
     about: str
     tallest_px: int = TALLEST_PX
 
+
+COCKPIT = "cockpit-live-1280-light"
+ELSEWHERE = {
+    "console": COCKPIT,
+    "downloads": "downloads",
+    "replay": "console-replay-light",
+    "storage": "storage",
+    "study": "console-overview-light",
+    "tablet": "tablet-form-1180",
+    "tour": "tour",
+}
+"""Pictures of other documents, by their name in docs/images."""
 
 CONSOLE = (
     Page("console-login-light", "Login", "For people with an account; others need an invitation."),
@@ -67,7 +79,12 @@ CONSOLE = (
     Page(
         "preflight", "Pre-flight", "One list of checks before the start, each passed or overridden."
     ),
-    Page("cockpit-live", "Cockpit", "The next action, the clock, and both bodies in space."),
+    Page(
+        COCKPIT,
+        "Cockpit",
+        "The scene in the middle, with the clock and the next action over it.",
+        WINDOW_PX,
+    ),
     Page("alarm-silent-dark", "An alarm", "Impossible to miss, without moving anything else."),
     Page("alarm-history-light", "Alarms so far", "When each began and ended."),
     Page("session-debriefing", "Debriefing", "Shortly before the end, with what is still missing."),
@@ -153,6 +170,9 @@ def section(heading: str, pages: tuple[Page, ...]) -> list[str]:
 def main(folder: Path) -> None:
     """Write the pictures and the document that shows them."""
     PICTURES.mkdir(parents=True, exist_ok=True)
+    for name, shot in ELSEWHERE.items():
+        if (folder / f"{shot}.png").exists():
+            small_picture(folder / f"{shot}.png", DOCS / "images" / f"{name}.png", WINDOW_PX)
     for page in (*CONSOLE, *TABLET):
         source = folder / f"{page.shot}.png"
         if source.exists():
