@@ -14,7 +14,7 @@ from app.protocol import step_kind_texts, step_kinds_for_pages
 from app.science.statistical_tests import texts_of_tests
 from app.texts import Words, typescript_list, typescript_object, typescript_table
 
-TARGET = "frontend/src/console/i18n/registries.generated.ts"
+TARGET = "frontend/src/shared/session/registries.generated.ts"
 """The generated file, relative to the repository's folder."""
 COMMAND = "python -m app.cli.page_texts"
 

@@ -38,7 +38,7 @@ COPIED = ("app", "study_configs", "migrations", "pyproject.toml")
 GENERATED = frozenset(
     {
         "docs/data-dictionary.md",
-        "frontend/src/console/i18n/registries.generated.ts",
+        "frontend/src/shared/session/registries.generated.ts",
         "frontend/src/shared/api/schema.d.ts",
     }
 )

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tests.architecture.recipes import Edit, Json, Recipe, Tree, after, before
 
-PAGE_TEXTS = "frontend/src/console/i18n/registries.generated.ts"
+PAGE_TEXTS = "frontend/src/shared/session/registries.generated.ts"
 CHECKS = "app/features/record/preflight/checks/registry.py"
 TESTS = "app/science/statistical_tests/registry.py"
 WRITERS = "app/adapters/captures/writers.py"

@@ -66,3 +66,11 @@ def test_two_clicks_lead_from_the_first_page_into_a_body(
     statuses = {step["kind"]: step["status"] for step in view["steps"]}
     assert (view["kind"], view["status"]) == ("test", "active")
     assert (statuses["consent"], statuses["materialise"]) == ("skipped", "done")
+    # One person is participant and experimenter: the page has the experimenter's next button.
+    bar = acted.desk.get_by_label("What the experimenter presses")
+    expect(bar.get_by_role("button")).to_be_enabled()
+    screenshot(acted.desk, "acting-on-screen-next")
+    bar.get_by_role("button").click()
+    expect(bar.get_by_text("The task is running.")).to_be_visible()
+    begun = ok(headset_site.operator.get(f"/api/sessions/{session_id}"))["current"]
+    assert begun["status"] in ("preparing", "running")

@@ -11,7 +11,7 @@ REPOSITORY = Path(__file__).parents[2]
 NAMED_IN = {
     "app/protocol/procedure.py",
     "app/protocol/step_kinds.py",
-    "frontend/src/console/i18n/registries.generated.ts",
+    "frontend/src/shared/session/registries.generated.ts",
     "frontend/src/shared/api/schema.d.ts",
 }
 """Files that may contain a phase kind as a literal: the schema of study files, the table of kinds,

@@ -1,6 +1,6 @@
 import type { Limb, StepKind } from "@shared/api/types";
+import { registryEn, STEP_KINDS } from "@shared/session/registries.generated";
 import { describe, expect, it } from "vitest";
-import { registryEn, STEP_KINDS } from "./i18n/registries.generated";
 import { isForm, isTimed, stepIcon, stepName, stepText } from "./steps";
 
 const kinds = Object.keys(STEP_KINDS) as StepKind[];

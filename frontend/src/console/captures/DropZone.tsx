@@ -1,7 +1,8 @@
 /** The upload of capture files: dropped, or chosen with a button. */
+
+import { CAPTURE_EXTENSIONS, CAPTURE_FORMATS } from "@shared/session/registries.generated";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
-import { CAPTURE_EXTENSIONS, CAPTURE_FORMATS } from "../i18n/registries.generated";
 import { DropArea } from "../ui/Uploads";
 import classes from "./Captures.module.css";
 

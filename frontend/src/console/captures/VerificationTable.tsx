@@ -9,11 +9,11 @@ import {
   type Walker,
 } from "@shared/api/captures";
 import { decimals, number } from "@shared/format";
+import { MOVEMENT_FORMATS } from "@shared/session/registries.generated";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX, ReactNode } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { MOVEMENT_FORMATS } from "../i18n/registries.generated";
 import { useDownload } from "../pages/study/useDownload";
 import { statureOf } from "./avatars";
 import classes from "./Verification.module.css";

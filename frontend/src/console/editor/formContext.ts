@@ -3,9 +3,9 @@
  * change it.
  */
 import type { ConfigProblem } from "@shared/api/types";
+import { registryEn } from "@shared/session/registries.generated";
 import { createContext, useContext, useEffect, useRef, useState } from "react";
 import { type Key, useTexts } from "../i18n";
-import { registryEn } from "../i18n/registries.generated";
 import { preregistrationEn } from "../preregistration/texts";
 import { fieldsEn } from "./fields/texts";
 import { type Change, type JsonObject, type Path, pathText, valueAt } from "./paths";

@@ -1,6 +1,7 @@
 /** The console's texts in German. */
 
 import { formDe } from "@shared/forms/texts";
+import { actionsDe } from "@shared/session/texts";
 import { pageDe } from "@shared/ui/pageTexts";
 import { alarmsDe } from "../cockpit/alarms/texts";
 import { bodyPanelDe } from "../cockpit/body/texts";
@@ -14,6 +15,7 @@ import type { en } from "./en";
 export const de: Record<keyof typeof en, string> = {
   ...pageDe,
   ...formDe,
+  ...actionsDe,
   ...alarmsDe,
   ...commandsDe,
   ...sessionDe,

@@ -1,6 +1,7 @@
 /** The console's texts in English; `de.ts` has the same keys. */
 
 import { formEn } from "@shared/forms/texts";
+import { actionsEn } from "@shared/session/texts";
 import { pageEn } from "@shared/ui/pageTexts";
 import { alarmsEn } from "../cockpit/alarms/texts";
 import { bodyPanelEn } from "../cockpit/body/texts";
@@ -13,6 +14,7 @@ import { labTrackersEn } from "../cockpit/trackers/texts";
 export const en = {
   ...pageEn,
   ...formEn,
+  ...actionsEn,
   ...alarmsEn,
   ...commandsEn,
   ...sessionEn,

@@ -3,6 +3,7 @@
  * load both: `textTables.ts` makes a module of each table.
  */
 import { verdictsDe, verdictsEn } from "@shared/selfTest/texts";
+import { registryDe, registryEn } from "@shared/session/registries.generated";
 import { avatarChangesDe, avatarChangesEn } from "../avatarChanges/texts";
 import { avatarsDe, avatarsEn } from "../avatarEditor/texts";
 import { tryoutDe, tryoutEn } from "../avatarEditor/tryout/texts";
@@ -50,7 +51,6 @@ import { walkingDe, walkingEn } from "../walking/texts";
 import { walkSetDe, walkSetEn } from "../walking/walkSetTexts";
 import { de } from "./de";
 import { en } from "./en";
-import { registryDe, registryEn } from "./registries.generated";
 
 export const allEn = {
   ...en,

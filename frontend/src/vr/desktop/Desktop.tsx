@@ -1,10 +1,13 @@
 /** The study on a screen instead of in a headset, with the keys that move the participant. */
 import { Loader } from "@mantine/core";
 import { number } from "@shared/format";
-import { type JSX, useEffect, useRef, useState } from "react";
+import { type JSX, lazy, Suspense, useEffect, useRef, useState } from "react";
 import { useTexts } from "../i18n";
 import { DESKTOP_KEYS } from "../tracking";
 import classes from "./Desktop.module.css";
+
+// With all names of steps and commands, which only a page on a screen needs.
+const OperatorBar = lazy(() => import("./OperatorBar"));
 
 /** Whether the page was opened for a screen: `/vr?screen=desktop`. */
 export const isDesktopAddress = (): boolean =>
@@ -18,16 +21,19 @@ export function keepDesktopAddress(): void {
 }
 
 interface DesktopProps {
+  readonly sessionId: string;
   readonly visit: {
     readonly isReady: boolean;
     readonly problem: string | null;
     /** The pictures a second, where they are too few for the session's clock; else null. */
     readonly slowHz: number | null;
+    /** Nothing happens before somebody goes on in the console. */
+    readonly isWaiting: boolean;
     readonly showOnScreen: (host: HTMLElement) => () => void;
   };
 }
 
-export function Desktop({ visit }: DesktopProps): JSX.Element {
+export function Desktop({ sessionId, visit }: DesktopProps): JSX.Element {
   const { t } = useTexts();
   const host = useRef<HTMLDivElement>(null);
   const { isReady, problem, showOnScreen } = visit;
@@ -49,7 +55,12 @@ export function Desktop({ visit }: DesktopProps): JSX.Element {
         </p>
       )}
       {visit.slowHz !== null && <TooSlow rateHz={visit.slowHz} />}
-      <Help />
+      <div className={classes.foot}>
+        <Suspense fallback={null}>
+          <OperatorBar sessionId={sessionId} isWaiting={visit.isWaiting} />
+        </Suspense>
+        <Help />
+      </div>
     </div>
   );
 }

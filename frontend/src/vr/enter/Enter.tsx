@@ -204,7 +204,9 @@ function VisitPage({ pairing, onCode, onUnpaired }: VisitPageProps): JSX.Element
     isSpoken.current = true;
     if (spoken !== language) setLanguage(spoken);
   }, [spoken, language, setLanguage]);
-  if (isOnScreen && !visit.isOver && failure === null) return <Desktop visit={visit} />;
+  if (isOnScreen && !visit.isOver && failure === null) {
+    return <Desktop sessionId={pairing.sessionId} visit={visit} />;
+  }
   if (isTestOnScreen) return <SelfTestOnScreen test={test} onEnd={endTestOnScreen} />;
   if (test.progress !== null) {
     return (

@@ -26,6 +26,8 @@ export interface VisitState {
   readonly isOver: boolean;
   /** Nothing of the session is under way that a test of the headset would disturb. */
   readonly isBetween: boolean;
+  /** No phase runs or counts down: somebody goes on in the console, or answers a form. */
+  readonly isWaiting: boolean;
   /** Why the connection has ended for good. */
   readonly failure: Failure | null;
   readonly vr: VrState;
@@ -55,6 +57,7 @@ export function useVisit(pairing: Pairing): VisitState {
   const [failure, setFailure] = useState<Failure | null>(null);
   const [isOver, setOver] = useState(false);
   const [isBetween, setBetween] = useState(false);
+  const [isWaiting, setWaiting] = useState(false);
   const [vrState, setVrState] = useState<VrState>("not_yet");
   const [problem, setProblem] = useState<string | null>(null);
   const [slowHz, setSlowHz] = useState<number | null>(null);
@@ -94,6 +97,7 @@ export function useVisit(pairing: Pairing): VisitState {
           void discardForms(pairing.sessionId).catch(() => undefined);
         }
         setBetween(isBetweenSteps(state));
+        setWaiting(state.phase === null || state.phase.status === "paused");
       };
       client.onState(follow);
       follow(client.state);
@@ -150,6 +154,7 @@ export function useVisit(pairing: Pairing): VisitState {
     isConnected: status?.connected ?? false,
     isOver,
     isBetween,
+    isWaiting,
     failure: status?.failure ?? failure,
     vr: vrState,
     slowHz,

@@ -82,6 +82,16 @@ export const de: Readonly<Record<keyof typeof en, string>> = {
   "support.no_headset.android_xr": "Starten Sie Chrome neu und öffnen Sie diese Seite noch einmal.",
   "support.no_headset.computer":
     "Starten Sie SteamVR oder das Programm der VR-Brille und schalten Sie die Brille ein. Diese Seite bemerkt es von selbst. Um die Studie ohne VR-Brille auszuprobieren, koppeln Sie diese Seite und wählen Sie „Auf diesem Bildschirm handeln“.",
+  "operator.title": "Was die Versuchsleitung drückt",
+  "operator.next": "Der nächste Schritt der Versuchsleitung:",
+  "operator.runs": "Die Aufgabe läuft.",
+  "operator.elsewhere":
+    "Der nächste Teil ist nicht auf dieser Seite, sondern in der Konsole oder auf dem Tablet.",
+  "operator.enter": "Enter",
+  "operator.console": "Konsole öffnen",
+  "operator.stale": "Die Sitzung war inzwischen weiter. Dies ist nun ihr nächster Schritt.",
+  "operator.waits": "Es geht weiter, wenn die Versuchsleitung in der Konsole fortfährt.",
+  "operator.signIn": "Sind Sie die Versuchsleitung? Melden Sie sich an, um von hier fortzufahren",
   "desktop.title": "Desktop-Modus",
   "desktop.starting": "Die Studie wird auf diesem Bildschirm vorbereitet",
   "desktop.begin":

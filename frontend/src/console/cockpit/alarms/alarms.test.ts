@@ -1,8 +1,8 @@
 import type { Alarm, LiveAlarm, SessionView, StorageNews, TelemetryNews } from "@shared/api/types";
+import { registryEn } from "@shared/session/registries.generated";
 import { milliseconds } from "@shared/units";
 import { describe, expect, it } from "vitest";
 import { en as pages } from "../../i18n/en";
-import { registryEn } from "../../i18n/registries.generated";
 import { at, session } from "../example";
 import { TelemetryStore } from "../session/telemetryStore";
 import {

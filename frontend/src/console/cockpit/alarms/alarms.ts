@@ -1,10 +1,10 @@
 /** The active alarms in order of importance, and their texts. */
 import type { Alarm, FailingNews, LiveAlarm, SessionView, StorageNews } from "@shared/api/types";
 import { clockFace, number } from "@shared/format";
+import { ALARMS, ALARMS_OF_PERSON, ALARMS_THAT_PAUSE } from "@shared/session/registries.generated";
 import { type Milliseconds, milliseconds, type Seconds, seconds } from "@shared/units";
 import { useEffect, useState } from "react";
 import type { Key } from "../../i18n";
-import { ALARMS, ALARMS_OF_PERSON, ALARMS_THAT_PAUSE } from "../../i18n/registries.generated";
 import { type Quality, type TelemetryStore, useQuality } from "../session/telemetryStore";
 
 /** An alarm as it is shown, whether it was received live or read with the session. */

@@ -1,8 +1,8 @@
 /** The texts for the result of a check. */
 import type { Check } from "@shared/api/types";
 import { number } from "@shared/format";
+import { CHECKS_MENDED_IN_SECONDS } from "@shared/session/registries.generated";
 import type { Key } from "../../i18n";
-import { CHECKS_MENDED_IN_SECONDS } from "../../i18n/registries.generated";
 
 /** Units without a symbol are counts, whose text says what is counted. */
 const SYMBOLS: Readonly<Partial<Record<NonNullable<Check["unit"]>, string>>> = {

@@ -1,6 +1,6 @@
 import type { Check } from "@shared/api/types";
+import { registryEn } from "@shared/session/registries.generated";
 import { describe, expect, it } from "vitest";
-import { registryEn } from "../../i18n/registries.generated";
 import {
   amountOf,
   expectationOf,

@@ -1,69 +1,24 @@
 /**
- * Derive from the session what an operator does next, which commands need a reason, and which steps
+ * Derive from the session what an operator may do, which commands need a reason, and which steps
  * can be repeated.
  */
-import type { Command, CommandType, Device, SessionView, Step } from "@shared/api/types";
-import type { IconName } from "@shared/ui/Icon";
+import type { CommandType, SessionView, Step } from "@shared/api/types";
+import { currentStep, isConnected, lacksHeadset } from "@shared/session/nextAction";
 import type { Key } from "../../i18n";
-import { isCompletedByButton, isForm, isTimed, stepText } from "../../steps";
+import { isForm, isTimed, stepText } from "../../steps";
 
-interface PrimaryAction {
-  readonly command: Command;
-  readonly label: Key;
-  readonly icon: IconName;
-}
-
-/** The current step; null before the start and after the end. */
-export function currentStep(session: SessionView): Step | null {
-  return session.current === null ? null : (session.steps[session.current.index] ?? null);
-}
-
-/**
- * The primary action, or null when the next move is not the operator's: the tablet is being filled
- * in, the headset counts down, or the session is over. Height is not included, because it has its
- * own form; nor is consent, which only the participant can give and which takes more than one press
- * on paper, too.
- */
-export function primaryAction(session: SessionView): PrimaryAction | null {
-  const may = (type: Command["type"]): boolean => session.allowed.includes(type);
-  const step = currentStep(session);
-  if (may("start")) return { command: { type: "start" }, label: "do.start", icon: "play" };
-  if (step === null) return null;
-  if (may("resume")) return { command: { type: "resume" }, label: "do.resume", icon: "play" };
-  if (may("begin_phase")) {
-    return { command: { type: "begin_phase" }, label: stepText("do.begin", step), icon: "play" };
-  }
-  if (may("materialise")) {
-    return { command: { type: "materialise" }, label: "do.materialise", icon: "body" };
-  }
-  if (may("complete_step") && isCompletedByButton(step)) {
-    const command: Command = { type: "complete_step", step_index: step.index };
-    return { command, label: `do.complete.${step.kind}` as Key, icon: "check" };
-  }
-  return null;
-}
-
-const NEEDS_HEADSET: readonly CommandType[] = ["materialise", "begin_phase", "resume"];
-
-const needsHeadset = (type: string): boolean => NEEDS_HEADSET.some((one) => one === type);
-
-/**
- * Whether the server would refuse the next action because no headset is connected to carry it out.
- */
-export const lacksHeadset = (session: SessionView): boolean =>
-  session.allowed.some(needsHeadset) && !isConnected(session, "headset");
-
-/** Whether the primary action has to wait until a headset is connected. */
-export const isBlocked = (session: SessionView, { command }: PrimaryAction): boolean =>
-  needsHeadset(command.type) && !isConnected(session, "headset");
+export {
+  currentStep,
+  isBlocked,
+  isConnected,
+  lacksHeadset,
+  primaryAction,
+} from "@shared/session/nextAction";
 
 /** Whether the session cannot go on without a headset, be it an action or a form that waits. */
 export const awaitsHeadset = (session: SessionView): boolean =>
   lacksHeadset(session) ||
   (currentStep(session)?.forms === "headset" && !isConnected(session, "headset"));
-
-export const isConnected = ({ devices }: SessionView, device: Device): boolean =>
-  devices.some(({ kind, connected }) => kind === device && connected);
 
 /** The instruction for the operator: what to say or do now. */
 export function guidance(session: SessionView): Key {
