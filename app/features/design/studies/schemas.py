@@ -63,11 +63,15 @@ class StudyView(StudySummary):
 
 
 class TemplateView(BaseModel):
-    """A study to use as a template; `key` names the file, not the study in it."""
+    """A study to use as a template; `key` names the file, not the study in it.
+
+    `needs_feet`: a task is done with the feet, which the headset has to measure.
+    """
 
     key: str
     title: dict[str, str]
     description: dict[str, str]
+    needs_feet: bool
     yaml: str
 
 

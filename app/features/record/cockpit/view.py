@@ -37,6 +37,7 @@ from app.features.record.sessions import (
     PhaseStatus,
     SessionState,
     SessionStatus,
+    StepStatus,
     allowed_commands,
     consent_form,
     content_body,
@@ -266,7 +267,7 @@ def _step(
         duration_s=step.duration_s,
         freeze_s=step.freeze_s,
         instrument=step.instrument,
-        status=str(own.status),
+        status=_shown_status(own.status, state),
         attempt=own.attempt,
         reason=reasons.get(step.index),
         consent=consent_form(step, "en"),
@@ -274,6 +275,12 @@ def _step(
         avatar_changes=step.avatar_changes,
         forms=step.forms,
     )
+
+
+def _shown_status(status: StepStatus, state: SessionState) -> str:
+    """Return a step's status; nothing is current once the session has ended."""
+    has_ended = state.status not in (SessionStatus.PLANNED, SessionStatus.ACTIVE)
+    return str(StepStatus.PENDING if has_ended and status is StepStatus.CURRENT else status)
 
 
 def _current(plan: Sequence[Step], state: SessionState) -> CurrentView | None:

@@ -38,6 +38,7 @@ from app.features.record.sessions.engine import (
     PhaseStatus,
     SessionState,
     SessionStatus,
+    StepStatus,
     allowed_commands,
     commands,
 )
@@ -128,6 +129,7 @@ __all__ = [
     "RetractRefusal",
     "SessionState",
     "SessionStatus",
+    "StepStatus",
     "SubmitForm",
     "allowed_commands",
     "apply_command",

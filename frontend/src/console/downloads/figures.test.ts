@@ -3,7 +3,7 @@ import type { StorageRoom } from "@shared/api/housekeeping";
 import { bytes } from "@shared/format";
 import { describe, expect, it } from "vitest";
 import { diskShares, roundToTwoDigits } from "../storage/figures";
-import { choose } from "../tour/HelpMenu";
+import { studyToTry } from "../tour/studyToTry";
 
 describe("sizes", () => {
   it.each([
@@ -68,6 +68,6 @@ describe("the study that is tried", () => {
     ["/studies/gone", ["another"], "another"],
     ["/", [], null],
   ])("at %s of %j is %s", (address, studyKeys, chosen) => {
-    expect(choose(address, studyKeys)).toBe(chosen);
+    expect(studyToTry(address, studyKeys, null)).toBe(chosen);
   });
 });

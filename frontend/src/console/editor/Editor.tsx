@@ -1,5 +1,5 @@
 /** The study editor: the form on the left, its YAML on the right, always of the same study. */
-import { ActionIcon, Button, Tabs, Tooltip } from "@mantine/core";
+import { ActionIcon, Anchor, Button, Tabs, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { drafts } from "@shared/api/drafts";
 import { studies } from "@shared/api/endpoints";
@@ -108,7 +108,15 @@ function Bar({ draft, studyKey, title, unsaved, onSave }: BarProps): JSX.Element
       dropDraft(studyKey ?? "new");
       await queries.invalidateQueries({ queryKey: ["studies"] });
       notifications.show({
-        message: t("editor.saved", { version: study.version }),
+        message: (
+          <>
+            {t("editor.saved", { version: study.version })}{" "}
+            {studyKey === null && (
+              <Anchor href={`#/studies/${study.key}`}>{t("editor.saved.next")}</Anchor>
+            )}
+          </>
+        ),
+        ...(studyKey === null && { autoClose: false }),
         closeButtonProps: { "aria-label": t("action.close") },
       });
       navigate(`/studies/${study.key}/edit`);

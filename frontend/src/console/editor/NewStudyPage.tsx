@@ -45,12 +45,18 @@ export function NewStudyPage(): JSX.Element {
 }
 
 function TemplateCard({ template }: { readonly template: Template }): JSX.Element {
-  const { language } = useTexts();
+  const { t, language } = useTexts();
   return (
     <li>
       <Link href={`/new/template/${template.key}`} className={classes.card ?? ""}>
         <span className={classes.name}>{inLanguage(template.title, language)}</span>
         <span className={classes.about}>{inLanguage(template.description, language)}</span>
+        {template.needs_feet && (
+          <span className={classes.needs}>
+            <Icon name="foot" size={16} />
+            {t("new.feet")}
+          </span>
+        )}
       </Link>
     </li>
   );

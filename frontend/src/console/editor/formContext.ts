@@ -60,8 +60,12 @@ function readable(name: string): string {
   return unit === undefined ? written : `${written} (${unit})`;
 }
 
+/** The key of the text of a field in one particular object, such as `field.valid_when.forms`. */
+export const fieldKey = (name: string, of: Path): string => `field.${[...of, name].join(".")}`;
+
 interface Labels {
-  readonly field: (name: string) => string;
+  /** `of`: the path of the object that has the field, where the same name means another thing. */
+  readonly field: (name: string, of?: Path) => string;
   readonly hint: (name: string) => string | undefined;
   readonly value: (value: string) => string;
 }
@@ -71,7 +75,8 @@ export function useLabels(): Labels {
   const translated = (key: string): string | undefined =>
     key in NAMED ? t(key as Key) : undefined;
   return {
-    field: (name) => translated(`field.${name}`) ?? readable(name),
+    field: (name, of = []) =>
+      translated(fieldKey(name, of)) ?? translated(`field.${name}`) ?? readable(name),
     hint: (name) => translated(`hint.${name}`),
     value: (value) => translated(`value.${value}`) ?? translated(`step.${value}`) ?? value,
   };

@@ -4,6 +4,7 @@ export const editorEn = {
   "new.lead":
     "Start from something that works and change it. Nothing is stored until you save, and every problem is shown at its line.",
   "new.templates": "From a template",
+  "new.feet": "Needs measured feet: trackers on the shins, or a headset that tracks the legs.",
   "new.copy": "From an existing study",
   "new.copy.lead": "A copy with its own ledger and sessions.",
   "new.import": "From a file",
@@ -21,6 +22,7 @@ export const editorEn = {
   "editor.redo": "Redo",
   "editor.save": "Save as a version",
   "editor.saveNew": "Save the study",
+  "editor.saved.next": "To its page, for a new session",
   "editor.saved": "Saved as version {{version}}.",
   "editor.checking": "Checking",
   "editor.fine": "No problems",
@@ -85,6 +87,8 @@ export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
   "new.lead":
     "Beginnen Sie mit etwas, das funktioniert, und ändern Sie es. Gespeichert wird erst mit „Studie speichern“; jedes Problem wird an seiner Zeile gezeigt.",
   "new.templates": "Aus einer Vorlage",
+  "new.feet":
+    "Braucht gemessene Füße: Tracker an den Unterschenkeln oder ein Headset, das die Beine verfolgt.",
   "new.copy": "Aus einer vorhandenen Studie",
   "new.copy.lead": "Eine Kopie mit eigenem Plan und eigenen Sitzungen.",
   "new.import": "Aus einer Datei",
@@ -102,6 +106,7 @@ export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
   "editor.redo": "Wiederholen",
   "editor.save": "Als Version speichern",
   "editor.saveNew": "Studie speichern",
+  "editor.saved.next": "Zu ihrer Seite, für eine neue Sitzung",
   "editor.saved": "Als Version {{version}} gespeichert.",
   "editor.checking": "Wird geprüft",
   "editor.fine": "Keine Probleme",

@@ -220,8 +220,10 @@ function StudyChoice({
 }): JSX.Element {
   const { t } = useTexts();
   const [address, navigate] = useLocation();
-  const listed = useQuery(studiesQuery).data ?? [];
-  const label = study?.title ?? study?.key ?? t("frame.study.none");
+  const query = useQuery(studiesQuery);
+  const listed = query.data ?? [];
+  const none = t(query.isPending ? "frame.study.loading" : "frame.study.none");
+  const label = study?.title ?? study?.key ?? none;
   const section = sectionAt(address) ?? "overview";
   return (
     <Menu position="right-start" width={280} withInitialFocusPlaceholder={false}>

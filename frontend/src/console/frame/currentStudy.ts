@@ -6,6 +6,9 @@ import { studyIn } from "./places";
 
 const REMEMBERED = "reembody.study";
 
+/** The study that was open last in this browser; null if none was. */
+export const lastStudy = (): string | null => localStorage.getItem(REMEMBERED);
+
 export interface CurrentStudy {
   readonly key: string;
   /** Null until the list of studies has arrived, or where the study is archived. */
@@ -25,7 +28,7 @@ export function useCurrentStudy(address: string): CurrentStudy | null {
   useEffect(() => {
     if (open !== null) localStorage.setItem(REMEMBERED, open);
   }, [open]);
-  const last = localStorage.getItem(REMEMBERED);
+  const last = lastStudy();
   const known = (key: string | null): boolean =>
     key !== null && (listed === undefined || listed.some((study) => study.key === key));
   const key = open ?? (known(last) ? last : (listed?.[0]?.key ?? null));

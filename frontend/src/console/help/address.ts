@@ -11,6 +11,7 @@ export const HELPS: readonly (readonly [address: RegExp, key: string])[] = [
   [/^\/instruments/, "study-configs"],
   [/^\/captures/, "captures"],
   [/^\/walking/, "walking"],
+  [/^\/equipment/, "headsets"],
   [/^\/network/, "lab-network"],
   [/^\/storage/, "backups"],
   [/^\/people/, "people-and-roles"],

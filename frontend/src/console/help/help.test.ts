@@ -7,6 +7,7 @@ import { search } from "./search";
 describe("the key ?", () => {
   it("opens the help about the current page, or the tour", () => {
     expect(helpFor("/studies/a/participants")).toBe("/help/participants-rights");
+    expect(helpFor("/equipment")).toBe("/help/headsets");
     expect(helpFor("/")).toBe("/help/operators-tour");
   });
 });

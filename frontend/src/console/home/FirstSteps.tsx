@@ -7,11 +7,12 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useLocation } from "wouter";
 import { Failure } from "../errors";
+import { lastStudy } from "../frame/currentStudy";
 import { type Key, useTexts } from "../i18n";
 import { type Permission, usePermissions } from "../permissions";
 import { studyQuery } from "../queries";
-import { choose } from "../tour/HelpMenu";
 import { opened, useActOnScreen } from "../tour/onScreen";
+import { studyToTry } from "../tour/studyToTry";
 import { studyLanguage, useStartTryout } from "../tour/TryIt";
 import { useLoadDemo } from "./demo";
 import classes from "./Home.module.css";
@@ -23,9 +24,10 @@ export function FirstSteps({ listed }: { readonly listed: readonly StudySummary[
   const demo = useLoadDemo();
   const start = useStartTryout();
   const act = useActOnScreen();
-  const study = choose(
+  const study = studyToTry(
     "/",
     listed.map(({ key }) => key),
+    lastStudy(),
   );
   const watch = useMutation({
     mutationFn: async (studyKey: string) => {

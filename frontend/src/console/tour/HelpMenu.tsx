@@ -9,6 +9,7 @@ import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
 import { useErrorTexts } from "../errors";
+import { lastStudy } from "../frame/currentStudy";
 import { helpFor } from "../help/address";
 import { useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
@@ -16,6 +17,7 @@ import { studiesQuery, studyQuery } from "../queries";
 import { Key } from "../ui/Key";
 import classes from "./HelpMenu.module.css";
 import { opened as newTab, useActOnScreen } from "./onScreen";
+import { studyToTry } from "./studyToTry";
 import { studyLanguage, useStartTryout } from "./TryIt";
 import { startTour } from "./tourStore";
 
@@ -30,7 +32,7 @@ export function HelpMenu(): JSX.Element {
   const act = useActOnScreen();
   const tries = can("tryout") || can("run");
   const listed = useQuery({ ...studiesQuery, enabled: opened && tries });
-  const studyKey = choose(address, listed.data?.map(({ key }) => key) ?? []);
+  const studyKey = studyToTry(address, listed.data?.map(({ key }) => key) ?? [], lastStudy());
   const tell = (error: unknown) => {
     const { message, remedy } = describe(error, errors);
     notifications.show({ color: "red", title: message, message: remedy, autoClose: 12_000 });
@@ -115,12 +117,3 @@ export function HelpMenu(): JSX.Element {
 }
 
 const isSession = (address: string): boolean => /^\/sessions\/[^/]+$/.test(address);
-
-/** The study that is shipped with the product and needs no preparation. */
-const SHIPPED = "reembodiment-latency";
-
-/** The study whose page is open, otherwise the shipped one, otherwise the first. */
-export function choose(address: string, keys: readonly string[]): string | null {
-  const here = /^\/studies\/([^/?]+)/.exec(address)?.[1];
-  return keys.find((key) => key === here) ?? keys.find((key) => key === SHIPPED) ?? keys[0] ?? null;
-}

@@ -11582,6 +11582,8 @@ export interface components {
         /**
          * TemplateView
          * @description A study to use as a template; `key` names the file, not the study in it.
+         *
+         *     `needs_feet`: a task is done with the feet, which the headset has to measure.
          */
         readonly TemplateView: {
             /** Description */
@@ -11590,6 +11592,8 @@ export interface components {
             };
             /** Key */
             readonly key: string;
+            /** Needs Feet */
+            readonly needs_feet: boolean;
             /** Title */
             readonly title: {
                 readonly [key: string]: string;

@@ -107,6 +107,19 @@ def test_redo_skip_abort_and_withdraw_need_a_reason(
 
 
 @pytest.mark.one_engine
+@pytest.mark.parametrize("end", ["abort", "withdraw"])
+def test_no_step_is_current_after_the_end(lab: Lab, end: str) -> None:
+    """A session that ended early shows where it stopped as a step that was not done."""
+    view = lab.skip_to(lab.join(), "free_roam")
+    at = view["current"]["index"]
+    ended = lab.command(view, end, reason="equipment")
+    assert [step["status"] for step in ended["steps"][at:]] == ["pending"] * len(
+        ended["steps"][at:]
+    )
+    assert ended["current"] is None
+
+
+@pytest.mark.one_engine
 def test_an_empty_note_is_refused(lab: Lab, planned: Json) -> None:
     """An empty note is refused."""
     error(lab.try_command(planned, "note", text=" "), 422, "invalid_input")

@@ -75,8 +75,16 @@ def _view(file: Path) -> TemplateView:
         key=file.stem,
         title=_texts(tree.get("title")),
         description=_texts(tree.get("description")),
+        needs_feet=_has_foot_task(tree),
         yaml=text,
     )
+
+
+def _has_foot_task(tree: Plain) -> bool:
+    """Return whether any part of a study's file is done with the feet."""
+    if isinstance(tree, dict):
+        return tree.get("limb") == "foot" or any(map(_has_foot_task, tree.values()))
+    return isinstance(tree, list) and any(map(_has_foot_task, tree))
 
 
 def _texts(value: Plain) -> dict[str, str]:

@@ -19,6 +19,7 @@ from app.features.record.sessions.engine.state import (
     PhaseStatus,
     SessionState,
     SessionStatus,
+    StepStatus,
     state_from_json,
     state_to_json,
 )
@@ -32,6 +33,7 @@ __all__ = [
     "Refused",
     "SessionState",
     "SessionStatus",
+    "StepStatus",
     "allowed_commands",
     "decide",
     "event_from_json",

@@ -9,6 +9,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
+import { lanCommand } from "../../pages/network/lanCommand";
 import { networkQuery } from "../../queries";
 import { useShown } from "../../ui/page";
 import classes from "../Panels.module.css";
@@ -135,7 +136,7 @@ function LocalhostOnly({
   return (
     <Notice tone="warn" title={t("pairing.onlyHere")}>
       <p className={classes.localhostOnly}>{t("pairing.onlyHere.body")}</p>
-      <code className={classes.localhostOnly}>./run --lan</code>
+      <code className={classes.localhostOnly}>{lanCommand(window.location.port)}</code>
       {device === "headset" && network !== undefined && (
         <>
           <p className={classes.localhostOnly}>{t("pairing.onlyHere.cable")}</p>

@@ -4,7 +4,7 @@
  */
 import { Modal, Select, Stack, Text } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
-import { type JSX, useState } from "react";
+import { type JSX, useEffect, useState } from "react";
 import { useTexts } from "../../i18n";
 import { stepName } from "../../steps";
 import { DialogButtons } from "../../ui/DialogButtons";
@@ -30,23 +30,41 @@ interface ReasonDialogProps {
 export function ReasonDialog({ type, session, live, onClose }: ReasonDialogProps): JSX.Element {
   const { t } = useTexts();
   const named = useShown(type);
+  // Back on the button that opened it, Enter would ask again instead of going on.
+  const [isSent, setSent] = useState(false);
+  useEffect(() => {
+    if (type !== null) setSent(false);
+  }, [type]);
   return (
     <Modal
       opened={type !== null}
       onClose={onClose}
+      returnFocus={!isSent}
       title={named && t(`ask.${named}`)}
       closeButtonProps={{ "aria-label": t("action.close") }}
     >
-      {type !== null && <ReasonForm type={type} session={session} live={live} onClose={onClose} />}
+      {type !== null && (
+        <ReasonForm
+          type={type}
+          session={session}
+          live={live}
+          onClose={onClose}
+          onSent={() => {
+            setSent(true);
+            onClose();
+          }}
+        />
+      )}
     </Modal>
   );
 }
 
 interface ReasonFormProps extends ReasonDialogProps {
   readonly type: Reasoned;
+  readonly onSent: () => void;
 }
 
-function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Element {
+function ReasonForm({ type, session, live, onClose, onSent }: ReasonFormProps): JSX.Element {
   const { t } = useTexts();
   const refused = type === "withdraw" && session.refusal !== null;
   const [reason, setReason] = useState(refused ? t("reason.refused") : "");
@@ -60,7 +78,7 @@ function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Elem
         event.preventDefault();
         if (reason.trim() === "") return;
         const which = type === "redo" ? { step_index: step } : {};
-        live.send({ type, reason: reason.trim(), ...which }, onClose);
+        live.send({ type, reason: reason.trim(), ...which }, onSent);
       }}
     >
       <Stack>

@@ -108,7 +108,7 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
             <SpecField
               path={[...path, field.name]}
               spec={field.spec}
-              label={labels.field(field.name)}
+              label={labels.field(field.name, path)}
             />
             {!field.required && (
               <button
@@ -119,7 +119,7 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
                   if (has(field)) change([{ path: [...path, field.name], action: "remove" }]);
                 }}
               >
-                {t("editor.leaveOut", { name: labels.field(field.name) })}
+                {t("editor.leaveOut", { name: labels.field(field.name, path) })}
               </button>
             )}
           </div>
@@ -138,7 +138,7 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
                 change([{ path: [...path, field.name], action: "set", value }]);
               }}
             >
-              {labels.field(field.name)}
+              {labels.field(field.name, path)}
             </Button>
           ))}
         </div>

@@ -10,6 +10,7 @@ import { networkQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import { useTitle } from "../../ui/page";
 import { Copyable } from "./Copyable";
+import { lanCommand } from "./lanCommand";
 import classes from "./Network.module.css";
 
 const TONES: Readonly<Record<Network["mode"], Tone>> = {
@@ -41,7 +42,7 @@ function Parts({ network }: { readonly network: Network }): JSX.Element {
         icon={network.mode === "lan" ? "lock" : network.mode === "loopback" ? "info" : "alert"}
         title={t(`network.mode.${network.mode}`)}
       >
-        {t(`network.mode.${network.mode}.body`)}
+        {t(`network.mode.${network.mode}.body`, { command: lanCommand(window.location.port) })}
       </Notice>
       <div className={classes.grid}>
         <Addresses network={network} />

@@ -4,7 +4,7 @@ export const networkEn = {
   "network.lead": "How tablets and headsets reach this server.",
   "network.mode.loopback": "This computer only",
   "network.mode.loopback.body":
-    "No other device can reach the server, except headsets on a USB cable. For tablets, stop the server and start it with ./run --lan.",
+    "No other device can reach the server, except headsets on a USB cable. For tablets, stop the server and start it with {{command}}.",
   "network.mode.lan": "Encrypted on the lab's network",
   "network.mode.lan.body": "Tablets and headsets on the same network reach it over https.",
   "network.mode.without_tls": "On the network without encryption",
@@ -55,7 +55,7 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "network.lead": "Wie Tablets und Headsets diesen Server erreichen.",
   "network.mode.loopback": "Nur dieser Rechner",
   "network.mode.loopback.body":
-    "Außer Headsets am USB-Kabel erreicht kein anderes Gerät den Server. Für Tablets beenden Sie den Server und starten ihn mit ./run --lan.",
+    "Außer Headsets am USB-Kabel erreicht kein anderes Gerät den Server. Für Tablets beenden Sie den Server und starten ihn mit {{command}}.",
   "network.mode.lan": "Verschlüsselt im Netz des Labors",
   "network.mode.lan.body": "Tablets und Headsets im selben Netz erreichen ihn über https.",
   "network.mode.without_tls": "Im Netz ohne Verschlüsselung",

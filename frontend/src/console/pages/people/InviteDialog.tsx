@@ -20,6 +20,7 @@ import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { invitationsQuery } from "../../queries";
 import { RoleBadge } from "../../ui/badges";
+import { lanCommand } from "../network/lanCommand";
 import { RoleChoice, StudiesChoice } from "./RoleAndStudies";
 
 export function InviteButton(): JSX.Element {
@@ -145,7 +146,11 @@ function InviteLink({ invited, onDone }: InviteLinkProps): JSX.Element {
       <Notice tone="warn" icon="key">
         {t("invite.once", { date: dateTime(invited.expires_at, language) })}
       </Notice>
-      {invited.only_here && <Notice tone="warn">{t("invite.loopback")}</Notice>}
+      {invited.only_here && (
+        <Notice tone="warn">
+          {t("invite.loopback", { command: lanCommand(window.location.port) })}
+        </Notice>
+      )}
       <Group justify="flex-end">
         <Button variant="default" onClick={onDone}>
           {t("invite.done")}

@@ -75,7 +75,7 @@ export const peopleEn = {
   "invite.once":
     "It is shown only once and works once, until {{date}}. Share it privately: anyone who has the link can use it.",
   "invite.loopback":
-    "Only this computer can reach the server, so the link works only here. To invite someone on another computer, stop the server, start it with ./run --lan, and create a new invitation.",
+    "Only this computer can reach the server, so the link works only here. To invite someone on another computer, stop the server, start it with {{command}}, and create a new invitation.",
   "invite.done": "Done",
   "invitations.for": "For",
   "invitations.status": "Status",
@@ -192,7 +192,7 @@ export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
   "invite.once":
     "Er wird nur jetzt gezeigt und funktioniert einmal, bis {{date}}. Geben Sie ihn vertraulich weiter: Wer ihn hat, kann ihn benutzen.",
   "invite.loopback":
-    "Nur dieser Rechner erreicht den Server, der Link funktioniert also nur hier. Um jemanden an einem anderen Rechner einzuladen, beenden Sie den Server, starten ihn mit ./run --lan und laden neu ein.",
+    "Nur dieser Rechner erreicht den Server, der Link funktioniert also nur hier. Um jemanden an einem anderen Rechner einzuladen, beenden Sie den Server, starten ihn mit {{command}} und laden neu ein.",
   "invite.done": "Fertig",
   "invitations.for": "Für",
   "invitations.status": "Stand",
