@@ -11,6 +11,7 @@ from app.science.instruments.answers import (
     valid_answers,
     validate_answers,
 )
+from app.science.instruments.doubts import reversal_doubts, reversed_items, scale_doubts
 from app.science.instruments.errors import (
     AnswerError,
     DefinitionProblem,
@@ -48,6 +49,9 @@ __all__ = [
     "is_key",
     "item_order",
     "names_in",
+    "reversal_doubts",
+    "reversed_items",
+    "scale_doubts",
     "score_answers",
     "scores_of_columns",
     "shortened",

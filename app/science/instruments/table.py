@@ -17,6 +17,7 @@ import numpy as np
 import pandas as pd
 
 from app.science.instruments.answers import as_number
+from app.science.instruments.doubts import reversal_doubts, reversed_items, scale_doubts
 from app.science.instruments.errors import AnswerError, InstrumentTableError, shortened
 from app.science.instruments.formula import names_in
 from app.science.instruments.instrument import Instrument
@@ -26,6 +27,10 @@ from app.science.instruments.scoring import FloatArray, scores_of_columns
 __all__ = ["Scored", "score_csv", "score_table", "scored_csv"]
 _NAMED_ROWS = 5
 _NAMED_PROBLEMS = 50
+_NAMES_OF_PEOPLE = frozenset(
+    {"id", "pid", "ppid", "vp", "person", "participant", "participant_id", "subject", "subject_id"}
+    | {"code", "respondent", "teilnehmer", "proband"}
+)
 _SEPARATORS = (",", ";", "\t")
 _MISSING = frozenset({"", "na", "n/a", "nan", "null", "none"})
 _YES_NO = {"true": True, "yes": True, "false": False, "no": False}
@@ -43,7 +48,8 @@ class _Row:
 class Scored:
     """A scored table as CSV, with sentences on what is to be looked at.
 
-    They name scores without a value (how many, where, why), and rows that occur twice.
+    They name scores without a value (how many, where, why), rows and ids that occur twice, and
+    answers that hardly fit the instrument as a whole (`doubts`).
     """
 
     text: str
@@ -73,7 +79,8 @@ def scored_csv(instrument: Instrument, text_in: str, missing: Collection[str] = 
     table = score_table(instrument, pd.DataFrame(cells, columns=header, dtype=object))
     notes = _notes_on_empty_scores(instrument, header, rows, table)
     if len(_item_columns(instrument, header)) < len(header):
-        notes += _notes_on_repeated_rows(rows)
+        notes += _notes_on_repeated_rows(rows) + _notes_on_repeated_ids(instrument, header, rows)
+    notes += _notes_on_answers(instrument, header, cells)
     return Scored(_to_csv(table, [score.key for score in instrument.scores]), notes)
 
 
@@ -117,6 +124,65 @@ def _notes_on_repeated_rows(rows: list[_Row]) -> tuple[str, ...]:
         " if they are one form, remove all but one"
     )
     return (note,)
+
+
+def _notes_on_repeated_ids(
+    instrument: Instrument, header: list[str], rows: list[_Row]
+) -> tuple[str, ...]:
+    """Return a sentence if all ids of a row are those of another one, with other answers.
+
+    Where every id recurs, the rows are repeated measures without a column for what was repeated;
+    that is asked about only if a column is named like one of people.
+    """
+    items = set(_item_columns(instrument, header).values())
+    ids = [at for at in range(len(header)) if at not in items]
+    lines: dict[tuple[str, ...], list[_Row]] = {}
+    for row in rows:
+        lines.setdefault(tuple(row.cells[at].strip() for at in ids), []).append(row)
+    repeated = {
+        own: same
+        for own, same in lines.items()
+        if any(own) and len({tuple(row.cells) for row in same}) > 1
+    }
+    people = any(header[at].strip().casefold() in _NAMES_OF_PEOPLE for at in ids)
+    if not repeated or not (people or 2 * len(repeated) <= len(lines)):
+        return ()
+    shown = "; ".join(
+        f"{', '.join(filter(None, own))} in lines {' and '.join(str(row.line) for row in same)}"
+        for own, same in list(repeated.items())[:_NAMED_ROWS]
+    )
+    more = f"; and {len(repeated) - _NAMED_ROWS} more" if len(repeated) > _NAMED_ROWS else ""
+    note = (
+        f"{shown}{more}: the same in {', '.join(header[at].strip() for at in ids)}, with other"
+        " answers, and no column tells the rows apart. Each was scored; add a column such as the"
+        " condition, or correct the id"
+    )
+    return (note,)
+
+
+def _notes_on_answers(
+    instrument: Instrument, header: list[str], cells: list[list[str]]
+) -> tuple[str, ...]:
+    """Return sentences on answers that hardly fit the instrument as a whole."""
+    named = _item_columns(instrument, header)
+    numeric = {key: at for key, at in named.items() if instrument.by_key[key].is_numeric}
+    forms = [
+        {
+            key: as_number(instrument, instrument.by_key[key], _cell(row[at]))
+            for key, at in numeric.items()
+        }
+        for row in cells
+    ]
+    turned = reversal_doubts(reversed_items(instrument), forms)
+    note = (
+        f"{'; '.join(turned)}. Each was reversed as its formula says; if the file has already"
+        " reversed them, put the raw answers into it"
+    )
+    scales = [
+        f"{doubt} They were scored as they are; if it was, convert them to this one first"
+        for doubt in scale_doubts(instrument, forms)
+    ]
+    return (*((note,) if turned else ()), *scales)
 
 
 def _notes_on_empty_scores(

@@ -23,10 +23,10 @@ from app.features.results.imports.schemas import (
 )
 from app.features.results.imports.service import applied_to, known_instrument
 from app.features.results.imports.sheet import Sheet, read_sheet
-from app.features.results.imports.warnings import reversal_notes, reversed_items, shift_of
+from app.features.results.imports.warnings import reversal_notes, shift_of
 from app.models import Study
 from app.protocol import sha256_of
-from app.science.instruments import Instrument
+from app.science.instruments import Instrument, reversed_items
 
 _EXAMPLES, _SHOWN_ROWS, _SHOWN_PROBLEMS, _SHOWN_WORDS = 6, 6, 200, 60
 _WIDTH = 80
