@@ -28,7 +28,8 @@ SHORTER = (
 STEP_S = 0.02
 
 
-def _short() -> str:
+def short_study() -> str:
+    """Return the template with one crossing a block, and short waits."""
     text = TEMPLATE.read_text(encoding="utf-8")
     for old, new in SHORTER:
         assert old in text, old
@@ -56,7 +57,7 @@ def test_a_visit_crosses_the_road_and_all_of_it_is_stored_and_exported(tmp_path:
     """
     with LiveServer(tmp_path) as server, server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
-        ok(api.post("/api/studies", json={"yaml": _short()}))
+        ok(api.post("/api/studies", json={"yaml": short_study()}))
         report = _rehearsed(server)
         assert report.status == "completed"
         crossed = [phase for phase in report.phases if phase["kind"] == "road_crossing"]

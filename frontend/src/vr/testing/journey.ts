@@ -10,13 +10,14 @@ import type { Place } from "@shared/avatar/hips";
 import { minus, type Vector } from "@shared/rotations";
 import type {} from "../selftest";
 import type {} from "../session/inspection";
-import type { BoxRun } from "../tasks";
+import type { BoxRun, RoadRun } from "../tasks";
 import { currentGoal } from "../tasks/views";
 import { rotationTo } from "../tracking/places";
 import {
   type ArmPose,
   goalOn,
   marchingStep,
+  type ScriptedGoal,
   ScriptedPerson,
   type Traits,
   WornDevices,
@@ -205,10 +206,13 @@ class Journey {
 
   /** What the task's rules expect next, as the person sees it in the room. */
   #goal(timeS: number) {
-    const run = globalThis.reembody?.run as BoxRun | null | undefined;
-    const state = run?.state;
-    if (run == null || state === undefined) return null;
+    const run = globalThis.reembody?.run as BoxRun | RoadRun | null | undefined;
+    if (run == null) return null;
     this.person.latencyS = run.order.latency_ms / 1000;
+    // The page's classes are not those of this script.
+    if ("wayAcrossM" in run) return acrossOn(run);
+    const { state } = run;
+    if (state === undefined) return null;
     const { layout, writingHand } = state.rules;
     if (this.isMarching && layout.limb === "foot") return marchingStep(timeS);
     const key = currentGoal(state);
@@ -231,6 +235,13 @@ class Journey {
     await nextTask();
     await (globalThis.reembodyTest ?? globalThis.reembody)?.idle();
   }
+}
+
+/** On the road the person walks across without looking, there and back. */
+function acrossOn(run: RoadRun): ScriptedGoal | null {
+  if (!run.clockRuns) return null;
+  const zM = run.completed % 2 === 0 ? -run.wayAcrossM : 0;
+  return { kind: "walk_to", limb: null, targetM: [0, 0, zM], nearM: 0.2, approachM: [0, 0.1, 0] };
 }
 
 /**

@@ -33,6 +33,8 @@ const LONGEST_LEAD_S = 0.5;
 const SWING_RAD = 0.45;
 const STRIDE_M = 1.35;
 const HIPS_M = 0.9;
+/** Trunk and head come before the legs. */
+const FIRST_LEG = 2;
 
 const ASPHALT = new Color("#53565a");
 const PAVEMENT = new Color("#a8a49b");
@@ -57,7 +59,8 @@ export class Street {
   readonly #kerbM: number;
   readonly #laneM: number;
   readonly #ground: Mesh<BufferGeometry, MeshBasicMaterial>;
-  readonly #cars: InstancedMesh;
+  /** What has the car's own colour, and what is the same on all. */
+  readonly #cars: readonly InstancedMesh[];
   readonly #walkers: readonly InstancedMesh[];
   readonly #strides = new Map<string, { x: number; z: number; walkedM: number }>();
   readonly #at = new Object3D();
@@ -70,9 +73,9 @@ export class Street {
       groundOf(road, kerbM, this.#middleZM),
       new MeshBasicMaterial({ vertexColors: true }),
     );
-    this.#cars = instanced(carGeometry());
+    this.#cars = carGeometries().map(instanced);
     this.#walkers = walkerGeometries().map(instanced);
-    this.group.add(this.#ground, this.#cars, ...this.#walkers);
+    this.group.add(this.#ground, ...this.#cars, ...this.#walkers);
     this.group.visible = false;
   }
 
@@ -89,7 +92,7 @@ export class Street {
       else if (actor.kind === "person" && walkers < MOST) this.#setWalker(walkers++, actor, place);
     }
     for (const [mesh, count] of [
-      [this.#cars, cars],
+      ...this.#cars.map((one) => [one, cars] as const),
       ...this.#walkers.map((one) => [one, walkers] as const),
     ] as const) {
       mesh.count = count;
@@ -101,7 +104,7 @@ export class Street {
   dispose(): void {
     this.#ground.geometry.dispose();
     this.#ground.material.dispose();
-    for (const mesh of [this.#cars, ...this.#walkers]) {
+    for (const mesh of [...this.#cars, ...this.#walkers]) {
       mesh.geometry.dispose();
       (mesh.material as MeshLambertMaterial).dispose();
       mesh.dispose();
@@ -123,8 +126,8 @@ export class Street {
     one.rotation.set(0, headingRad, 0);
     one.scale.set(actor.length_m, 1, actor.width_m);
     one.updateMatrix();
-    this.#cars.setMatrixAt(at, one.matrix);
-    this.#cars.setColorAt(at, colourOf(actor.name, CAR_COLOURS));
+    for (const mesh of this.#cars) mesh.setMatrixAt(at, one.matrix);
+    this.#cars[0]?.setColorAt(at, colourOf(actor.name, CAR_COLOURS));
   }
 
   #setWalker(at: number, { name, width_m: widthM }: Actor, { x, z, headingRad }: Placed): void {
@@ -138,14 +141,14 @@ export class Street {
     const colour = colourOf(name, CLOTHES);
     this.#walkers.forEach((mesh, part) => {
       const one = this.#at;
-      const sides = part === 0 ? 0 : part === 1 ? 1 : -1;
-      one.position.set(x, floorM + (part === 0 ? 0 : HIPS_M), z);
+      const leg = part - FIRST_LEG;
+      one.position.set(x, floorM + (leg < 0 ? 0 : HIPS_M), z);
       one.rotation.set(0, headingRad, 0);
       one.scale.set(1, 1, widthM / 0.5);
-      if (part > 0) one.rotateZ(sides * swing);
+      if (leg >= 0) one.rotateZ(leg === 0 ? swing : -swing);
       one.updateMatrix();
       mesh.setMatrixAt(at, one.matrix);
-      mesh.setColorAt(at, colour);
+      if (part === 0) mesh.setColorAt(at, colour);
     });
   }
 }
@@ -189,8 +192,8 @@ function box(
   return painted(new BoxGeometry(lengthM, heightM, widthM).translate(...at), colour);
 }
 
-/** A car of 1 x 1 in length and width, its front towards +x, standing on the floor. */
-function carGeometry(): BufferGeometry {
+/** A car of 1 x 1 in length and width, its front towards +x: bodywork, and all else. */
+function carGeometries(): readonly BufferGeometry[] {
   const wheel = (x: number, z: number) =>
     painted(
       new CylinderGeometry(0.32, 0.32, 0.12, 14)
@@ -199,25 +202,26 @@ function carGeometry(): BufferGeometry {
         .translate(x, 0.32, z),
       "#18191b",
     );
-  const parts = [
+  const bodywork = [
     box([1, 0.55, 0.98], [0, 0.57, 0], "#ffffff"),
-    box([0.5, 0.55, 0.86], [-0.05, 1.12, 0], "#20262c"),
     box([0.44, 0.06, 0.86], [-0.05, 1.42, 0], "#ffffff"),
+  ];
+  const others = [
+    box([0.5, 0.55, 0.86], [-0.05, 1.12, 0], "#2a3138"),
     box([0.006, 0.12, 0.18], [0.5, 0.68, 0.36], "#fff7d6"),
     box([0.006, 0.12, 0.18], [0.5, 0.68, -0.36], "#fff7d6"),
     box([0.006, 0.12, 0.18], [-0.5, 0.7, 0.36], "#b3261e"),
     box([0.006, 0.12, 0.18], [-0.5, 0.7, -0.36], "#b3261e"),
     ...[0.31, -0.31].flatMap((x) => [wheel(x, 0.46), wheel(x, -0.46)]),
   ];
-  return merged(parts);
+  return [merged(bodywork), merged(others)];
 }
 
-/** Trunk with head and arms, and the two legs, which hang from their hips. */
+/** Trunk with arms, the head, and the two legs, which hang from their hips. */
 function walkerGeometries(): readonly BufferGeometry[] {
   const skin = "#c9a68a";
   const trunk = merged([
     painted(new CapsuleGeometry(0.17, 0.38, 4, 12).translate(0, 1.2, 0), "#ffffff"),
-    painted(new SphereGeometry(0.115, 16, 12).translate(0, 1.62, 0), skin),
     painted(new CapsuleGeometry(0.05, 0.5, 3, 8).translate(0, 1.13, 0.23), "#ffffff"),
     painted(new CapsuleGeometry(0.05, 0.5, 3, 8).translate(0, 1.13, -0.23), "#ffffff"),
   ]);
@@ -226,7 +230,14 @@ function walkerGeometries(): readonly BufferGeometry[] {
       painted(new CapsuleGeometry(0.075, 0.7, 3, 8).translate(0, -0.45, z), "#33363b"),
       box([0.25, 0.08, 0.1], [0.06, -0.86, z], "#1d1e20"),
     ]);
-  return [trunk, leg(0.09), leg(-0.09)];
+  const head = merged([
+    painted(new SphereGeometry(0.115, 16, 12).translate(0, 1.62, 0), skin),
+    painted(
+      new SphereGeometry(0.12, 16, 8, 0, 2 * Math.PI, 0, 1.3).translate(-0.01, 1.63, 0),
+      "#3b2c22",
+    ),
+  ]);
+  return [trunk, head, leg(0.09), leg(-0.09)];
 }
 
 function merged(parts: BufferGeometry[]): BufferGeometry {

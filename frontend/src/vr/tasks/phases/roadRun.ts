@@ -34,6 +34,11 @@ export class RoadRun extends FreeRun {
     return this.#done;
   }
 
+  /** From the start square over the road to the same place on the other side, m. */
+  get wayAcrossM(): number {
+    return 2 * (this.#road.road.lane_width_m + this.#road.starts_behind_kerb_m);
+  }
+
   override get endsEarly(): boolean {
     const required = this.order.until_completions;
     return required !== null && this.clockRuns && this.#done >= required;

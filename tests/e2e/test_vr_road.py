@@ -1,0 +1,63 @@
+"""Browser test of a visit in the headset's page in which the wearer crosses the study's road."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from tests.features.record.headset.site import Site
+from tests.rehearsal.test_road import short_study
+from tests.support.browser import ContextFactory
+from tests.support.vr_visit import QUICK, Visit, begun, journey_script, ok
+
+MOST_PICTURES = 6
+Json = dict[str, Any]
+
+
+def _pictured(visit: Visit, folder: str | None) -> Callable[[Json], bool]:
+    """Return what ends nothing, and saves what both eyes see whenever it is asked on the road."""
+    taken = 0
+
+    def look(view: Json) -> bool:
+        nonlocal taken
+        current = view["current"]
+        if folder is None or current is None or current["status"] != "running":
+            return False
+        if view["steps"][current["index"]]["kind"] == "road_crossing" and taken < MOST_PICTURES:
+            taken += 1
+            (Path(folder) / f"road-{taken}.png").write_bytes(visit.headset.picture())
+        return False
+
+    return look
+
+
+def test_a_wearer_crosses_the_road_between_cars(
+    headset_site: Site, new_context: ContextFactory, tmp_path: Path
+) -> None:
+    """The page says where the wearer is at every step, so that crossings and gaps are measured.
+
+    With REEMBODY_PICTURES set to a folder, what both eyes see on the way is saved there.
+    """
+    server, operator = headset_site.server, headset_site.operator
+    ok(operator.post("/api/studies", json={"yaml": short_study()}))
+    visit, tablet = begun(
+        operator,
+        new_context(),
+        journey_script(tmp_path),
+        server.url,
+        "road-short",
+        time_scale=10.0,
+        traits=QUICK,
+    )
+    with tablet:
+        view = visit.perform(until=_pictured(visit, os.environ.get("REEMBODY_PICTURES")))
+    assert tablet.error is None
+    assert view["status"] == "completed"
+    crossed = [one for one in view["phases"] if one["kind"] == "road_crossing"]
+    assert [(one["status"], one["completions"]) for one in crossed] == [("done", 1)] * 2
+    road = ok(operator.get(f"/api/sessions/{visit.session_id}/road"))
+    assert [(run["ended"], run["part"]) for run in road["runs"]] == [("complete", 1)] * 2
+    for run in road["runs"]:
+        (crossing,) = [one for one in run["crossings"] if one["is_across"]]
+        assert crossing["steps_off_s"] > crossing["steps_on_s"]
+        assert crossing["closest_m"] is not None
