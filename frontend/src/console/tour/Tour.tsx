@@ -10,7 +10,7 @@ import { type JSX, useEffect, useRef } from "react";
 import { useTexts } from "../i18n";
 import classes from "./Tour.module.css";
 import { endTour, TOUR_STEPS, type TourStep, turnTour, useTourStep } from "./tourStore";
-import { useAnchor } from "./useAnchor";
+import { type Place, useAnchor } from "./useAnchor";
 
 export function Tour(): JSX.Element | null {
   const number = useTourStep();
@@ -25,6 +25,12 @@ export function Tour(): JSX.Element | null {
 interface CalloutProps {
   readonly number: number;
   readonly step: TourStep;
+}
+
+/** A target stands on either side of the page: beside it is the side with room. */
+function sideOf({ side }: TourStep, place: Place | null): TourStep["side"] {
+  if (place === null || (side !== "left" && side !== "right")) return side;
+  return place.left + place.width / 2 > window.innerWidth / 2 ? "left" : "right";
 }
 
 const KEYS: Readonly<Record<string, () => void>> = {
@@ -54,7 +60,7 @@ function Callout({ number, step }: CalloutProps): JSX.Element {
   return (
     <Popover
       opened
-      position={step.side}
+      position={sideOf(step, place)}
       width={340}
       offset={12}
       withArrow={place !== null}
