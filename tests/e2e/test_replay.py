@@ -91,9 +91,10 @@ def test_a_replay_is_synchronised_with_its_events(
     for canvas in page.locator("canvas").all():
         expect(canvas).to_have_attribute("data-frame", "105")
     assert axe(page) == []
-    page.get_by_role("button", name="Record a video from this moment").click()
-    expect(times).not_to_have_attribute("data-time", "3.500")
-    with page.expect_download() as film:
-        page.get_by_role("button", name="Stop and save").click()
+    with page.expect_download(timeout=PATIENCE_MS) as film:
+        page.get_by_role("button", name="Record a video from this moment").click()
+        expect(page.get_by_role("button", name="Stop and save")).to_be_visible()
+        expect(times).not_to_have_attribute("data-time", "3.500")
+        page.keyboard.press("End")
     assert film.value.suggested_filename.endswith(".webm")
     assert film.value.path().read_bytes().startswith(EBML)
