@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { inLanguage, paragraphs } from "./text";
+import { inLanguage, isText, paragraphs } from "./text";
 
 describe("texts", () => {
   it("fall back to English and then to any language", () => {
@@ -30,5 +30,13 @@ describe("texts", () => {
     expect(paragraphs("<script>alert(1)</script>")).toEqual([
       { kind: "prose", text: "<script>alert(1)</script>" },
     ]);
+  });
+});
+
+describe("what was read from a file", () => {
+  it("is text unless bytes were replaced or are zeros, as in a picture", () => {
+    expect(isText("title: Größe\n")).toBe(true);
+    expect(isText("\uFFFDPNG\r\n")).toBe(false);
+    expect(isText("a\u0000b")).toBe(false);
   });
 });

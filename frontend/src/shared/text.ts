@@ -8,6 +8,10 @@ export function inLanguage(text: Text | string | null | undefined, language: str
   return text[language] ?? text.en ?? Object.values(text)[0] ?? "";
 }
 
+/** Whether what was read from a file is text: bytes that are none were replaced, or are zeros. */
+export const isText = (read: string): boolean =>
+  !read.includes("\u0000") && !read.includes("\uFFFD");
+
 /**
  * The parts of a longer text: blank lines separate paragraphs, lines starting with `- ` are points,
  * and `![t_pose]` alone is a picture by its name.

@@ -1,5 +1,5 @@
 /** The start of a new study: from a template, from an existing study, from a file, or empty. */
-import { Button, FileButton, Title } from "@mantine/core";
+import { Button, Title } from "@mantine/core";
 import type { Template } from "@shared/api/drafts";
 import type { StudySummary } from "@shared/api/types";
 import { inLanguage } from "@shared/text";
@@ -11,6 +11,7 @@ import { useTexts } from "../i18n";
 import { studiesQuery, templatesQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
+import { TextFileButton } from "../ui/TextFileButton";
 import { storeDraft } from "./LeaveGuard";
 import classes from "./NewStudy.module.css";
 
@@ -119,20 +120,13 @@ function FromStudy({ studies }: StudiesProps): JSX.Element {
 function FromFile(): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
-  const open = async (file: File | null) => {
-    if (file === null) return;
-    storeDraft("new", await file.text());
+  const open = (text: string) => {
+    storeDraft("new", text);
     navigate("/new/draft");
   };
   return (
     <StartOption icon="upload" title={t("new.import")} lead={t("new.import.lead")}>
-      <FileButton accept=".yaml,.yml,text/yaml" onChange={(file) => void open(file)}>
-        {(props) => (
-          <Button {...props} variant="default">
-            {t("import.file")}
-          </Button>
-        )}
-      </FileButton>
+      <TextFileButton accept=".yaml,.yml,text/yaml" onText={open} />
     </StartOption>
   );
 }

@@ -81,6 +81,9 @@ export const de: Record<keyof typeof en, string> = {
   "import.lead":
     "Wählen Sie die YAML-Datei einer Studie oder fügen Sie ihren Text ein. Sie wird geprüft, bevor etwas gespeichert wird.",
   "import.file": "Datei wählen",
+  "import.noText": "„{{name}}“ ist keine Textdatei",
+  "import.noText.body":
+    "Eine Studie ist eine YAML-Datei (.yaml oder .yml). Wählen Sie eine andere Datei.",
   "import.orPaste": "oder den Text unten einfügen",
   "import.source": "Studie als YAML",
   "import.check": "Prüfen",

@@ -78,6 +78,8 @@ export const en = {
   "import.lead":
     "Choose the YAML file of a study or paste its text. It is checked before anything is stored.",
   "import.file": "Choose a file",
+  "import.noText": "“{{name}}” is not a text file",
+  "import.noText.body": "A study is a YAML file (.yaml or .yml). Choose another file.",
   "import.orPaste": "or paste the text below",
   "import.source": "Study as YAML",
   "import.check": "Check",

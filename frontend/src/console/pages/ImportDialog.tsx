@@ -1,14 +1,14 @@
 /** Import a study (or its next version) from a YAML file, and show every problem. */
-import { Button, FileButton, Group, Modal, Stack, Text, Textarea } from "@mantine/core";
+import { Button, Group, Modal, Stack, Text, Textarea } from "@mantine/core";
 import { studies } from "@shared/api/endpoints";
 import { ApiError, type Problem } from "@shared/api/request";
-import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useRef, useState } from "react";
 import { useLocation } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { TextFileButton } from "../ui/TextFileButton";
 import classes from "./ImportDialog.module.css";
 import { offsetOfLine, Problems } from "./Problems";
 
@@ -101,16 +101,7 @@ function Source({ editor, yaml, rows, onChange }: SourceProps): JSX.Element {
   return (
     <>
       <div className={classes.drop}>
-        <FileButton
-          accept=".yaml,.yml,text/yaml"
-          onChange={(file) => void file?.text().then(onChange)}
-        >
-          {(props) => (
-            <Button {...props} variant="default" leftSection={<Icon name="upload" size={18} />}>
-              {t("import.file")}
-            </Button>
-          )}
-        </FileButton>
+        <TextFileButton accept=".yaml,.yml,text/yaml" onText={onChange} />
         <Text size="sm" c="dimmed">
           {t("import.orPaste")}
         </Text>
