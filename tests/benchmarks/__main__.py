@@ -2,7 +2,8 @@
 
 Benchmarks with a load accept its duration (`--seconds`, `--minutes`). With `--against COMMIT` the
 result is instead the ratio of this tree's processor time to COMMIT's (`against`). However a
-benchmark ends, its servers end with it.
+benchmark ends, its servers end with it. `all` runs every benchmark, for hours, and with `--write`
+makes the tables of docs/benchmarks.md (`figure_page`).
 """
 
 import argparse
@@ -12,10 +13,12 @@ import re
 import signal
 import sys
 from collections.abc import Sequence
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 from tests.benchmarks.against import PAIRS, compare
+from tests.benchmarks.figure_page import ALL, PAGE, run_all, run_one, table, written
 from tests.benchmarks.report import CannotMeasure, Report, as_table
 from tests.support.warden import is_warded, run_warded
 
@@ -44,9 +47,14 @@ def parser() -> argparse.ArgumentParser:
         epilog=EPILOGUE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    made.add_argument("name", choices=NAMES, help="the benchmark to run")
+    made.add_argument("name", choices=[ALL, *NAMES], help=f"the benchmark to run, or {ALL}")
     made.add_argument("--json", action="store_true", help="print the figures as JSON")
-    made.add_argument("--only", action="append", metavar="PART", help="this part; may be repeated")
+    made.add_argument(
+        "--only",
+        action="append",
+        metavar="PART",
+        help=f"this part, of {ALL} this benchmark; may be repeated",
+    )
     duration = made.add_mutually_exclusive_group()
     duration.add_argument("--seconds", type=float, help="duration of the load, if there is one")
     duration.add_argument("--minutes", type=float, help="duration of the load in minutes")
@@ -55,7 +63,9 @@ def parser() -> argparse.ArgumentParser:
         "--widths", type=_widths, metavar="PX,PX", help="windows of these widths, if there are any"
     )
     made.add_argument(
-        "--write", action="store_true", help="store the result that the product ships"
+        "--write",
+        action="store_true",
+        help=f"store the result that the product ships, of {ALL} the tables of docs/benchmarks.md",
     )
     made.add_argument("--against", metavar="COMMIT", help="compare with COMMIT, in pairs of runs")
     made.add_argument("--pairs", type=int, default=PAIRS, help=f"how many pairs ({PAIRS})")
@@ -77,12 +87,34 @@ def main(arguments: Sequence[str]) -> int:
         command = [sys.executable, "-m", "tests.benchmarks", *arguments]
         return run_warded(command, folder=REPOSITORY).exit_code
     try:
+        if asked.name == ALL:
+            return _measure_all(asked)
         report = _measured(asked) if asked.against is None else compare(asked)
     except CannotMeasure as error:
         print(f"./run bench: {error}", file=sys.stderr)
         return USAGE_ERROR
     print(json.dumps(report.as_json(), indent=2) if asked.json else as_table(report))
     return 0
+
+
+def _measure_all(asked: argparse.Namespace) -> int:
+    """Run several benchmarks; return 1 if one of them failed."""
+    unknown = sorted(set(asked.only or ()) - set(NAMES))
+    if unknown:
+        raise CannotMeasure(f"no benchmark {unknown[0]}; there are {', '.join(NAMES)}")
+    if asked.against is not None:
+        raise CannotMeasure(f"--against compares one benchmark, not {ALL}: name it")
+    today = datetime.now().astimezone().date()
+    found = run_all([name for name in NAMES if name in (asked.only or NAMES)], run_one)
+    if asked.write:
+        page = written(PAGE.read_text(encoding="utf-8"), found, today)
+        PAGE.write_text(page, encoding="utf-8")
+    if asked.json:
+        print(json.dumps(found.as_json(), indent=2))
+    else:
+        for name, report in found.reports.items():
+            print(f"### {name}\n\n{table(report, today)}\n")
+    return 1 if found.failed else 0
 
 
 def _measured(asked: argparse.Namespace) -> Report:
