@@ -12,6 +12,9 @@ from typing import Any
 
 import pytest
 
+from app.database import open_database
+from app.features.results.analysis.dashboard import build_dashboard
+from app.features.results.analysis.schemas import NO_FILTER
 from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, rehearse, store_template
 from app.resources import study_configs_dir
 from tests.features.lab import ok
@@ -79,6 +82,18 @@ def test_a_visit_crosses_the_road_and_all_of_it_is_stored_and_exported(tmp_path:
             assert abs(last["participant"]["y_m"]) > 2.5
             assert sum(one["kind"] == "car" for one in last.values()) >= 2
         _check_export(api, report)
+    _check_results(server)
+
+
+def _check_results(server: LiveServer) -> None:
+    """Figures and tests that are about boxes leave a phase on the road out, and none fails."""
+    database = open_database(f"sqlite:///{server.data_dir / 'reembody.sqlite'}")
+    try:
+        with database.reading() as db:
+            drawn = build_dashboard(db, "road-short", "simulated", NO_FILTER)
+    finally:
+        database.close()
+    assert drawn.figures
 
 
 def _check_export(api: Any, report: RehearsalReport) -> None:

@@ -41,6 +41,7 @@ const CAUSES = [
   "headset_silent",
   "server_restarted",
   "headset",
+  "road",
 ] as const;
 
 /** The key of the text for why a phase's clock was paused; null for a reason in a person's words. */

@@ -7,7 +7,7 @@ import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { SessionDownload } from "../../downloads/DownloadsButton";
 import { useTexts } from "../../i18n";
-import { stepName } from "../../steps";
+import { isCounted, stepName } from "../../steps";
 import { ScrollBox } from "../../ui/tables";
 import cockpit from "../Cockpit.module.css";
 import classes from "../Panels.module.css";
@@ -29,7 +29,7 @@ const replayOf = (session: string, phase: number): string =>
 
 export function PhaseTable({ session }: { readonly session: SessionView }): JSX.Element | null {
   const { t } = useTexts();
-  const tasks = session.phases.filter((phase) => phase.limb !== null);
+  const tasks = session.phases.filter((phase) => phase.limb !== null || isCounted(phase));
   if (tasks.length === 0) return null;
   return (
     <section className={classes.card}>
@@ -83,7 +83,7 @@ function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
   return (
     <tr className={voided ? classes.voided : undefined}>
       <td className={classes.phase}>
-        {phase.limb !== null && <span className={classes.nowrap}>{t(stepName(phase))}</span>}
+        <span className={classes.nowrap}>{t(stepName(phase))}</span>
         {phase.attempt > 1 && ` · ${t("timeline.attempt", { number: phase.attempt })}`}
         {voided && ` · ${t("recorded.voided")}`}
       </td>
@@ -109,7 +109,7 @@ function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
 
 function ReplayLink({ session, phase }: PhaseRowProps): JSX.Element {
   const { t } = useTexts();
-  const name = phase.limb === null ? "" : t(stepName(phase));
+  const name = t(stepName(phase));
   return (
     <ActionIcon
       component="a"
