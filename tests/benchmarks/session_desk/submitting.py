@@ -57,6 +57,8 @@ async def our_tablet(plan: Plan, cookie: str) -> list[float]:
     """Submit forms as the product's page does: every answer to a form has the next one."""
     http, took_s = LeanHttp(plan.port, {"cookie": cookie}), []
     state = json.loads(_good(await http.ask("GET", "/api/tablet/state"), OK).body)
+    # People who think do not finish in the same instant: one after the other begins.
+    await asyncio.sleep(plan.thinking_s * plan.who.index(cookie) / len(plan.who))
     for _ in range(plan.forms):
         await asyncio.sleep(plan.thinking_s)
         body = json.dumps(_answers(state["administration"])).encode()
