@@ -3,6 +3,7 @@
 from app.science.anatomy.handedness import (
     Handedness,
     handedness_of,
+    knees_agreeing,
     mirrored_bodies,
     mirrored_markers,
     mirrored_skeleton,
@@ -23,6 +24,12 @@ from app.science.anatomy.notice import (
     mirrored_notice,
     sentences,
 )
+from app.science.anatomy.over_time import (
+    distance_notice,
+    frozen_notice,
+    jump_notice,
+    repeated,
+)
 from app.science.anatomy.uprightness import (
     tilts_deg,
     turned_over_bodies,
@@ -38,13 +45,18 @@ __all__ = [
     "Notice",
     "Rule",
     "backward_foot_notice",
+    "distance_notice",
+    "frozen_notice",
     "handedness_of",
+    "jump_notice",
+    "knees_agreeing",
     "length_notices",
     "mirrored_bodies",
     "mirrored_markers",
     "mirrored_notice",
     "mirrored_skeleton",
     "plausible_m",
+    "repeated",
     "segment_lengths",
     "sentences",
     "sides_agree",

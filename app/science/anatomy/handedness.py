@@ -65,8 +65,28 @@ def handedness_of(places_m: Mapping[str, FloatArray]) -> Handedness:
     return Handedness(agreeing)
 
 
+def knees_agreeing(places_m: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Return the share of frames in which each knee bends forwards, by side, `left` and `right`.
+
+    Args:
+        places_m: as for `handedness_of`. Knees with too few votes are left out.
+    """
+    votes = _leg_votes(places_m).get("knees", [])
+    cast = {
+        side.lower(): own[np.isfinite(own) & (own != 0.0)]
+        for side, own in zip(_sides(places_m), votes, strict=bool(votes))
+    }
+    return {
+        side: float(np.mean(own > 0)) for side, own in cast.items() if len(own) >= _FEWEST_VOTES
+    }
+
+
+def _sides(places_m: Mapping[str, FloatArray]) -> list[str]:
+    return [side for side in ("Left", "Right") if f"{side}Foot" in places_m]
+
+
 def _leg_votes(places_m: Mapping[str, FloatArray]) -> dict[str, list[FloatArray]]:
-    sides = [side for side in ("Left", "Right") if f"{side}Foot" in places_m]
+    sides = _sides(places_m)
     if not sides or not _has(places_m, "UpperLeg", "LowerLeg"):
         return {}
     up = _middle(places_m, "UpperLeg") - _middle(places_m, "LowerLeg")

@@ -4,11 +4,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-Rule = Literal["mirrored", "pelvis", "sides", "length", "toes", "step_height", "unit", "upright"]
+Rule = Literal[
+    "mirrored", "pelvis", "sides", "length", "toes", "step_height", "unit", "upright", "knees",
+    "frozen", "jump",
+]  # fmt: skip
 """The rule that a body breaks: left and right are mirrored; it is upside down or lies; hip centres
 lie above the pelvis or its markers contradict those of the legs; two sides differ; a length does
-not fit the others; toes are missing; step heights do not scale with the legs. Or a file's unit of
-length is only known from the size of the body, `unit`."""
+not fit the others; toes are missing; step heights do not scale with the legs; a knee bends
+backwards or never; frames repeat exactly; the body or a marker jumps. Or a file's unit of length is
+only known from the size of the body, `unit`."""
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,12 @@ import numpy as np
 
 from app.science.anatomy import (
     Notice,
+    frozen_notice,
     handedness_of,
     mirrored_bodies,
     mirrored_markers,
     mirrored_notice,
+    repeated,
     sentences,
     tilts_deg,
     turned_over_bodies,
@@ -19,7 +21,7 @@ from app.science.anatomy import (
 from app.science.fitting.assembly import assemble
 from app.science.fitting.bodies import parts_of_bodies
 from app.science.fitting.constrained import constrained
-from app.science.fitting.label_checks import label_notice, unlike_a_body
+from app.science.fitting.label_checks import exchanged_notice, label_notice, unlike_a_body
 from app.science.fitting.landmarks import Landmarks, landmarks_of
 from app.science.fitting.lower_body import legs_of, pelvis_of
 from app.science.fitting.model import FitError, Fitted, Part, Parts
@@ -70,8 +72,14 @@ def fit_skeleton(motion: MarkerMotion | BodyMotion) -> Fitted:
     else:
         fit, notices = _fit_markers(motion)
     lengths, changed = constrained(fit.motion)
-    told = (*notices, *changed)
+    frozen = _frozen(motion)
+    told = (*notices, *changed, *(() if frozen is None else (frozen,)))
     return replace(fit, motion=lengths, notes=(*fit.notes, *sentences(told)), notices=told)
+
+
+def _frozen(motion: MarkerMotion | BodyMotion) -> Notice | None:
+    what = "everything that is tracked"
+    return frozen_notice({what: repeated(motion.positions_m)}, motion.rate_hz)
 
 
 def _fit_bodies(motion: BodyMotion) -> Fitted:
@@ -87,6 +95,9 @@ def _fit_markers(motion: MarkerMotion) -> tuple[Fitted, list[Notice]]:
     noise = unlike_a_body(marks)
     if noise is not None:
         raise FitError(noise.sentence)
+    exchanged = exchanged_notice(marks)
+    if exchanged is not None:
+        notices.append(exchanged)
     upright = upright_notice(tilts_deg(_joints_near(marks)))
     if upright is not None:
         notices.append(upright)

@@ -18,7 +18,13 @@ Before all that, markers have to move like a body: those of one segment keep the
 
 import numpy as np
 
-from app.science.anatomy import Notice, Rule, backward_foot_notice, mirrored_notice
+from app.science.anatomy import (
+    Notice,
+    Rule,
+    backward_foot_notice,
+    distance_notice,
+    mirrored_notice,
+)
 from app.science.fitting.landmarks import Landmarks
 from app.science.rotations import FloatArray
 
@@ -31,6 +37,12 @@ _SEGMENTS = (
     ("LELB", "LWRA"), ("RELB", "RWRA"),
 )  # fmt: skip
 """Landmarks at both ends of one segment."""
+_RIGID = (
+    *_SEGMENTS, ("LHEE", "LANK"), ("RHEE", "RANK"), ("LANK", "LTOE"), ("RANK", "RTOE"),
+    ("LHEE", "LMT5"), ("RHEE", "RMT5"), ("LKNE", "LKNM"), ("RKNE", "RKNM"),
+    ("LANK", "LANM"), ("RANK", "RANM"),
+)  # fmt: skip
+"""Landmarks whose distance hardly changes."""
 _FEWEST_SEGMENTS = 3
 _MOST_VARYING = 0.5
 _NEEDED = ("LASI", "RASI", "LKNE", "RKNE", "LANK", "RANK")
@@ -60,6 +72,18 @@ def unlike_a_body(marks: Landmarks) -> Notice | None:
         "Check that the labels belong to these markers all the time, and export again.",
         rule="length",
     )
+
+
+def exchanged_notice(marks: Landmarks) -> Notice | None:
+    """Return a notice if labels are exchanged for part of the time, so that lengths jump."""
+    lengths = {
+        f"{marks.markers[one]} and {marks.markers[other]}": np.linalg.norm(
+            marks[one] - marks[other], axis=-1
+        )
+        for one, other in _RIGID
+        if marks.has(one, other)
+    }
+    return distance_notice(lengths)
 
 
 def label_notice(marks: Landmarks) -> Notice | None:

@@ -7,6 +7,8 @@ feet would swing from the wrong side of the ankle (step heights of 2.5 to 3.6 ti
 were seen). It is mirrored back. One foot that points backwards cannot be mended without guessing.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from app.science.anatomy import (
@@ -14,10 +16,14 @@ from app.science.anatomy import (
     Handedness,
     Notice,
     backward_foot_notice,
+    frozen_notice,
     handedness_of,
+    jump_notice,
+    knees_agreeing,
     length_notices,
     mirrored_notice,
     mirrored_skeleton,
+    repeated,
     segment_lengths,
     tilts_deg,
     turned_over_skeleton,
@@ -39,6 +45,12 @@ _CLEARLY = 0.2
 """Cosine between foot and front from which a foot clearly points forwards, or backwards."""
 _SIDES_RATIO = 1.7
 """Ratio of both sides' mean step heights from which they are noted; captured walks had 1.3."""
+_FEWEST_STRIDES = 2
+"""Strides of one side between which there is a whole one of the other, if it walks."""
+_BACKWARDS = 0.2
+"""Share of the frames in which a knee bends forwards below which it bends backwards."""
+_STIFF_DEG, _BENT_DEG = 1.0, 20.0
+"""Changes of a knee's angle: at most, of one that never moves; at least, of one that does."""
 _HIGHEST_STEP_M = 0.4
 """Higher lifts are dance or climbing, whose sides may differ."""
 
@@ -55,7 +67,10 @@ def checked_skeleton(
             only what the file calls left can be mirrored back. A map of one's own that exchanges
             the sides is refused with the walk (`sides_notice`).
     """
-    notices: list[Notice] = []
+    pose, root = repeated(motion.rotations[:, 1:]), repeated(motion.root_positions_m)
+    frozen = frozen_notice({"the pose": pose, "the root's position": root}, motion.rate_hz)
+    over_time = (frozen, jump_notice(motion.root_positions_m, motion.rate_hz))
+    notices = [notice for notice in over_time if notice is not None]
     upright = upright_notice(tilts_deg(_places(motion, joint_map)))
     if upright is not None:
         notices.append(upright)
@@ -87,6 +102,42 @@ def sides_notice(motion: RigMotion, joint_map: JointMap) -> Notice | None:
         "Exchange left and right in the map. If the map is right, the file has left-handed axes:"
         " export it with right-handed ones.",
     )
+
+
+def knee_notice(motion: RigMotion, joint_map: JointMap) -> Notice | None:
+    """Return a notice if one knee bends backwards or never, while the other one bends forwards."""
+    places = _places(motion, joint_map)
+    forwards, bends = knees_agreeing(places), _knee_ranges_deg(places)
+    if forwards and min(forwards.values()) < _BACKWARDS < 1.0 - _BACKWARDS < max(forwards.values()):
+        what = "One knee bends backwards, as nobody's does."
+        value = [f"forwards in {100.0 * one:.0f} % {side}" for side, one in forwards.items()]
+    elif bends and min(bends.values()) < _STIFF_DEG < _BENT_DEG < max(bends.values()):
+        what = "One knee never moves, while the other one bends."
+        value = [f"bends by {one:.1f} degrees {side}" for side, one in bends.items()]
+    else:
+        return None
+    return Notice(
+        "knees",
+        "noted",
+        what,
+        ", ".join(value),
+        "both knees bend forwards",
+        "Check the names and channels of that leg in the file, and which joints are mapped to it."
+        " If the person wears an orthosis, it may be right.",
+    )
+
+
+def _knee_ranges_deg(places_m: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Return by how many degrees the angle of each knee changes, by side."""
+    found = {}
+    for side in ("Left", "Right"):
+        names = [f"{side}{part}" for part in ("UpperLeg", "LowerLeg", "Foot")]
+        if all(name in places_m for name in names):
+            hip, knee, ankle = (places_m[name] for name in names)
+            sizes = np.linalg.norm(hip - knee, axis=1) * np.linalg.norm(ankle - knee, axis=1)
+            cosines = np.einsum("ni,ni->n", hip - knee, ankle - knee) / np.maximum(sizes, 1e-9)
+            found[side.lower()] = float(np.ptp(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))))
+    return found
 
 
 def foot_notice(motion: RigMotion, joint_map: JointMap) -> Notice | None:
@@ -203,6 +254,20 @@ def uneven_steps_notice(left_m: float | None, right_m: float | None) -> Notice |
         f"at most {_SIDES_RATIO} times as high on one side",
         "If the person did not limp or step onto something, check the labels of heels and toes and"
         " which joints are mapped to feet and toes.",
+    )
+
+
+def one_sided_notice(left: int, right: int) -> Notice | None:
+    """Return a notice if only one side makes strides; `left` and `right` are their numbers."""
+    if min(left, right) > 0 or max(left, right) < _FEWEST_STRIDES:
+        return None
+    return Notice(
+        "step_height",
+        "noted",
+        "Only one leg makes strides.",
+        f"{left} strides left, {right} right",
+        "strides of both legs, in turns",
+        "Check the names and channels of the other leg, and which joints are mapped to its foot.",
     )
 
 

@@ -14,6 +14,8 @@ import numpy as np
 from app.science.anatomy import Notice
 from app.science.retargeting.anatomy_checks import (
     foot_notice,
+    knee_notice,
+    one_sided_notice,
     sides_notice,
     stature_notice,
     step_height_notice,
@@ -166,10 +168,12 @@ def retarget_motion(
     notices = (
         sides_notice(source, source_map),
         foot_notice(source, source_map),
+        knee_notice(source, source_map),
         toes_notice(source, source_map),
         stature_notice(None if walks is None else walks.source.leg_length_m),
         _step_notice(walks, retargeter.scale),
         _uneven_notice(walks),
+        _one_sided_notice(walks),
     )
     found = tuple(notice for notice in notices if notice is not None)
     return replace(_result(retargeter, motion, walks, floor), notices=found)
@@ -180,6 +184,13 @@ def _uneven_notice(walks: Walks | None) -> Notice | None:
         return None
     height_m = walks.source.mean_step_height_of_m
     return uneven_steps_notice(height_m("left"), height_m("right"))
+
+
+def _one_sided_notice(walks: Walks | None) -> Notice | None:
+    if walks is None:
+        return None
+    sides = [stride.side for stride in walks.source.strides]
+    return one_sided_notice(sides.count("left"), sides.count("right"))
 
 
 def _step_notice(walks: Walks | None, leg_ratio: float) -> Notice | None:

@@ -85,6 +85,9 @@ export const captureViewEn = {
   "anatomy.rule.step_height": "Steps are not as high as the legs allow.",
   "anatomy.rule.upright": "The body lies or is upside down.",
   "anatomy.rule.unit": "The file names no unit of length.",
+  "anatomy.rule.knees": "A knee bends backwards or never.",
+  "anatomy.rule.frozen": "Frames repeat exactly.",
+  "anatomy.rule.jump": "The body or a marker jumps.",
   "anatomy.action.mended": "It was corrected.",
   "anatomy.action.refused": "The result cannot be used.",
   "anatomy.action.noted": "It was left as captured.",
@@ -104,6 +107,12 @@ export const captureViewEn = {
   "anatomy.remedy.upright":
     "If the person stands, choose the upward axis below. A capture that is upside down throughout was turned over.",
   "anatomy.remedy.unit": "If the person has another size, choose the unit below.",
+  "anatomy.remedy.knees":
+    "Check the names and channels of that leg in the file, and which joints are mapped to it. If the person wears an orthosis, it may be right.",
+  "anatomy.remedy.frozen":
+    "The last frame was held there, as where tracking was lost: leave these frames out.",
+  "anatomy.remedy.jump":
+    "Check the labels and the root's positions in these frames, and leave these frames out or export again.",
   "conventions.guessed": "Check the guessed settings",
   "conventions.guessed.body":
     "The file does not specify them. If the size looks wrong, choose another unit or axis below.",
@@ -215,6 +224,9 @@ export const captureViewDe: Readonly<Record<keyof typeof captureViewEn, string>>
   "anatomy.rule.step_height": "Die Schritte sind nicht so hoch, wie es die Beine erwarten lassen.",
   "anatomy.rule.upright": "Der Körper liegt oder steht auf dem Kopf.",
   "anatomy.rule.unit": "Die Datei nennt keine Längeneinheit.",
+  "anatomy.rule.knees": "Ein Knie beugt sich nach hinten oder gar nicht.",
+  "anatomy.rule.frozen": "Einzelbilder wiederholen sich genau.",
+  "anatomy.rule.jump": "Der Körper oder ein Marker springt.",
   "anatomy.action.mended": "Das wurde korrigiert.",
   "anatomy.action.refused": "Das Ergebnis ist nicht verwendbar.",
   "anatomy.action.noted": "Das blieb wie aufgenommen.",
@@ -234,6 +246,12 @@ export const captureViewDe: Readonly<Record<keyof typeof captureViewEn, string>>
   "anatomy.remedy.upright":
     "Steht die Person, wählen Sie unten die nach oben zeigende Achse. Eine Aufnahme, die durchgehend auf dem Kopf stand, wurde umgedreht.",
   "anatomy.remedy.unit": "Ist die Person anders groß, wählen Sie unten die Einheit.",
+  "anatomy.remedy.knees":
+    "Prüfen Sie Namen und Kanäle dieses Beins in der Datei, und welche Gelenke ihm zugeordnet sind. Trägt die Person eine Orthese, kann es stimmen.",
+  "anatomy.remedy.frozen":
+    "Dort wurde das letzte Bild gehalten, etwa weil das Tracking verloren ging: Lassen Sie diese Bilder weg.",
+  "anatomy.remedy.jump":
+    "Prüfen Sie in diesen Bildern die Namen der Marker und die Positionen der Wurzel, und lassen Sie sie weg oder exportieren Sie neu.",
   "conventions.guessed": "Prüfen Sie die geratenen Angaben",
   "conventions.guessed.body":
     "Die Datei gibt sie nicht an. Wenn die Ausdehnung nicht stimmt, wählen Sie unten eine andere Einheit oder Achse.",

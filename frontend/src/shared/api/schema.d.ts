@@ -8360,7 +8360,7 @@ export interface components {
              * Rule
              * @enum {string}
              */
-            readonly rule: "mirrored" | "pelvis" | "sides" | "length" | "toes" | "step_height" | "unit" | "upright";
+            readonly rule: "mirrored" | "pelvis" | "sides" | "length" | "toes" | "step_height" | "unit" | "upright" | "knees" | "frozen" | "jump";
             /** Valid */
             readonly valid: string;
             /** Value */
