@@ -22,5 +22,7 @@ describe("A panel beside the mirror", () => {
       expect(angleRad).toBeGreaterThanOrEqual(0);
     }
     expect(besideRad(halfViewRad(0.5))).toBe(0);
+    // A wide window stretches its edges.
+    expect(degrees(besideRad(halfViewRad(1280 / 600))) + 24.5).toBeLessThan(42);
   });
 });

@@ -22,6 +22,8 @@ const BESIDE_RAD = (32 * Math.PI) / 180;
 /** Half of a panel's width as it is seen, and a gap to the edge of a window. */
 const HALF_PANEL_RAD = (24.5 * Math.PI) / 180;
 const EDGE_RAD = (2 * Math.PI) / 180;
+/** A flat picture stretches what lies farther from its middle until it can hardly be read. */
+const STRETCHED_RAD = (42 * Math.PI) / 180;
 const NEAR_M = 0.5;
 const FAR_M = 2.6;
 const AWAY_S = 1.5;
@@ -34,7 +36,10 @@ const WALL_GAP_M = 0.15;
  */
 export function besideRad(halfViewRad: number | null): number {
   if (halfViewRad === null) return BESIDE_RAD;
-  return Math.min(BESIDE_RAD, Math.max(0, halfViewRad - HALF_PANEL_RAD - EDGE_RAD));
+  return Math.min(
+    BESIDE_RAD,
+    Math.max(0, Math.min(halfViewRad, STRETCHED_RAD) - HALF_PANEL_RAD - EDGE_RAD),
+  );
 }
 
 export interface PanelsOptions {
