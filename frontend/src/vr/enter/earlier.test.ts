@@ -1,6 +1,13 @@
 import { beforeEach, describe, expect, it } from "vitest";
-import { earlierPairings, rememberEarlier, type Sent, sendEarlier } from "./earlier";
-import { forgetPairing, type Pairing, storedPairing, storePairing } from "./pairing";
+import { type Sent, sendEarlier } from "./earlier";
+import {
+  earlierPairings,
+  forgetPairing,
+  type Pairing,
+  rememberEarlier,
+  storedPairing,
+  storePairing,
+} from "./pairing";
 
 /** The storage of a browser, in memory. */
 class Memory implements Storage {

@@ -16,39 +16,7 @@ import {
   TelemetryError,
   type TelemetryOptions,
 } from "../telemetry";
-import type { Pairing } from "./pairing";
-
-const KEY = "reembody.vr.earlier";
-/** The oldest are forgotten beyond so many; a headset has one session at a time. */
-const MOST = 50;
-
-type Storage_ = Pick<Storage, "getItem" | "setItem" | "removeItem">;
-
-/** The sessions that may have something left, oldest first. */
-export function earlierPairings(storage: Storage_ = localStorage): readonly Pairing[] {
-  try {
-    const stored: unknown = JSON.parse(storage.getItem(KEY) ?? "[]");
-    if (!Array.isArray(stored)) return [];
-    return stored.filter(
-      (one): one is Pairing => typeof one?.sessionId === "string" && typeof one?.token === "string",
-    );
-  } catch {
-    return [];
-  }
-}
-
-/** Keep a pairing that another one replaces. */
-export function rememberEarlier(pairing: Pairing, storage: Storage_ = localStorage): void {
-  const others = earlierPairings(storage).filter((one) => one.sessionId !== pairing.sessionId);
-  const { sessionId, token } = pairing;
-  storage.setItem(KEY, JSON.stringify([...others, { sessionId, token }].slice(-MOST)));
-}
-
-export function forgetEarlier(sessionId: string, storage: Storage_ = localStorage): void {
-  const rest = earlierPairings(storage).filter((one) => one.sessionId !== sessionId);
-  if (rest.length === 0) storage.removeItem(KEY);
-  else storage.setItem(KEY, JSON.stringify(rest));
-}
+import { earlierPairings, forgetEarlier, type Pairing } from "./pairing";
 
 /** Whether a session has nothing left here, or could not be reached, or does not know its token. */
 export type Sent = "nothing_left" | "unreachable" | "unpaired";
