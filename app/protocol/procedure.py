@@ -150,14 +150,13 @@ SetupStep = Annotated[
 ClosingStep = Annotated[FormStep | InstructionsStep | DebriefStep, Field(discriminator="step")]
 
 
-class TaskPhase(Strict):
-    """One timed task. `duration_s` is active time: pauses and walks back do not count.
+class TimedPhase(Strict):
+    """A phase with a clock. `duration_s` is active time: pauses and walks back do not count.
 
     `preparation_s`: countdown before it; `freeze_s`: scene and body are frozen after it. `forms`:
     where its questionnaire is answered.
     """
 
-    limb: Limb
     preparation_s: Pause
     duration_s: Duration
     freeze_s: Pause
@@ -167,6 +166,12 @@ class TaskPhase(Strict):
     title: Text | None = None
     questionnaire_title: Text | None = None
     avatar_changes: OfThePhase = None
+
+
+class TaskPhase(TimedPhase):
+    """One timed task of a hand or a foot."""
+
+    limb: Limb
 
 
 def _each_limb_once(phases: tuple[TaskPhase, ...]) -> tuple[TaskPhase, ...]:
@@ -181,24 +186,14 @@ def _each_limb_once(phases: tuple[TaskPhase, ...]) -> tuple[TaskPhase, ...]:
     return phases
 
 
-class CrossingPhase(Strict):
+class CrossingPhase(TimedPhase):
     """The participant crosses the study's road, there and back, `crossings` times in all.
 
-    It ends after that many crossings, or when `duration_s` of active time are over. Its other
-    fields are those of `TaskPhase`.
+    It ends after that many crossings, or when `duration_s` of active time are over.
     """
 
     kind: ClassVar[StepKind] = "road_crossing"
     crossings: Annotated[int, Field(ge=1, le=100)] = 1
-    preparation_s: Pause
-    duration_s: Duration
-    freeze_s: Pause
-    questionnaire: Key
-    forms: OfTheForm = "tablet"
-    text: Key | None = None
-    title: Text | None = None
-    questionnaire_title: Text | None = None
-    avatar_changes: OfThePhase = None
 
 
 class Block(Strict):

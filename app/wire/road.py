@@ -78,17 +78,17 @@ class RoadWelcome(Message):
 
 
 class RoadActor(Message):
-    """One car or walker: where its middle is, how it moves, and its outline on the floor."""
+    """One car or walker: its outline on the floor, where its middle is, and how it moves."""
 
     name: str
     kind: Literal["person", "car"]
+    length_m: float
+    width_m: float
     x_m: float
     y_m: float
     heading_rad: float
     speed_m_s: float
     turn_rad_s: float
-    length_m: float
-    width_m: float
 
 
 class RoadActors(Message):

@@ -1,7 +1,8 @@
 """The headset of a session: its connection, the state it is sent, and its avatar."""
 
 from app.features.record.headset.avatar import SessionAvatar, trial_avatar
-from app.features.record.headset.connection import next_message, until_one_ends
+from app.features.record.headset.connection import next_message, next_of, until_one_ends
+from app.features.record.headset.further_socket import FurtherSocket
 from app.features.record.headset.goals import (
     calibration_underway,
     feet_tracked,
@@ -20,6 +21,7 @@ from app.features.record.headset.serving import serve_headset
 __all__ = [
     "TOPICS",
     "TOUCHES",
+    "FurtherSocket",
     "SessionAvatar",
     "Touch",
     "calibration_underway",
@@ -28,6 +30,7 @@ __all__ = [
     "is_recording",
     "newest_goals",
     "next_message",
+    "next_of",
     "participant_info",
     "serve_headset",
     "state_of_feet",

@@ -13,7 +13,7 @@ from collections.abc import Callable, Coroutine, Iterable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, TakenOver, Withdrawn
@@ -63,6 +63,7 @@ MAX_PROBE_ANSWERS = 64
 ECHO_NS = 1_000_000
 """Tolerance of an echoed time: a client that stores numbers as doubles rounds nanoseconds."""
 Argument = TypeVar("Argument")
+Kind = TypeVar("Kind")
 CLOSE_REFUSED = 4400
 TAKEN_OVER = "taken_over"
 """The topic on which the newest connection of a session makes itself known to the older ones."""
@@ -331,6 +332,18 @@ async def next_message(socket: WebSocket) -> bytes | str:
     return (received.get("text") or "") if message is None else message
 
 
+async def next_of(socket: WebSocket, kind: TypeAdapter[Kind]) -> Kind:
+    """Return the next message, read as one of this kind.
+
+    Raises InvalidInput, which names the first invalid field, and what `next_message` raises.
+    """
+    message = await next_message(socket)
+    try:
+        return kind.validate_json(message)
+    except ValidationError as error:
+        raise _not_understood(error, str(message[:200])) from error
+
+
 def can_be_true(reading: Probed, answers: Iterable[ProbeAnswer]) -> bool:
     """Return whether a clock probe can be true: it echoes an answer of ours, in a possible order.
 
@@ -353,11 +366,15 @@ def parse_message(text: str) -> ClientMessages:
     try:
         return CLIENT_MESSAGE.validate_json(text)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False)[0]
-        place = ".".join(map(str, first["loc"]))[:100]
-        at = f" at {place}" if place else ""
-        raise InvalidInput(
-            f"message not understood: {first['msg'][:300]}{at}",
-            value=text[:200],
-            remedy="See docs/protocol.md for the messages.",
-        ) from error
+        raise _not_understood(error, text[:200]) from error
+
+
+def _not_understood(error: ValidationError, text: str) -> InvalidInput:
+    first = error.errors(include_url=False, include_input=False)[0]
+    place = ".".join(map(str, first["loc"]))[:100]
+    at = f" at {place}" if place else ""
+    return InvalidInput(
+        f"message not understood: {first['msg'][:300]}{at}",
+        value=text,
+        remedy="See docs/protocol.md for the messages.",
+    )

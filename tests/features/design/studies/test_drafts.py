@@ -14,12 +14,12 @@ def yaml(lab: Lab) -> str:
 
 @pytest.mark.one_engine
 def test_templates_are_valid_and_are_not_stored_studies(lab: Lab) -> None:
-    """Four templates are offered and pass the check; only the shipped study is stored."""
+    """Five templates are offered and pass the check; only the shipped study is stored."""
     templates = ok(lab.operator.get("/api/templates"))
     assert templates[0]["key"] == STUDY
     needing_feet = {one["key"] for one in templates if one["needs_feet"]}
     assert needing_feet == {STUDY, "four-latencies-williams"}
-    assert len(templates) == 4
+    assert len(templates) == 5
     for template in templates:
         assert set(template["title"]) == {"en", "de"}
         assert ok(lab.operator.post("/api/studies/check", json={"yaml": template["yaml"]}))["ok"]

@@ -283,3 +283,18 @@ def _report_started(lab: Lab, session_id: str) -> None:
         session = session_by_id(db, session_id, lock=True)
         report = Report(what="started", phase_id=1, client_t_s=1.0, active_s=0.0)
         apply_command(db, lab.context, session, report, actor="headset")
+
+
+def test_only_a_running_session_says_at_which_step_it_is(lab: Lab) -> None:
+    """A planned session has no step in the list; a started one has the first, of how many."""
+    running, planned = lab.join(), lab.join()
+    started = lab.command(running, "start")
+    listed = {one["id"]: one for one in ok(lab.operator.get(f"/api/studies/{STUDY}/sessions"))}
+    assert listed[planned["id"]]["step"] is None
+    assert listed[running["id"]]["step"] == {
+        "index": 0,
+        "steps": len(started["steps"]),
+        "kind": "consent",
+        "limb": None,
+        "paused": False,
+    }

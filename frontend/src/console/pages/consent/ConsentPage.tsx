@@ -1,5 +1,3 @@
-/** The record of a consent, ready to be filed: on A4, everything that was shown and given. */
-import { Button } from "@mantine/core";
 import type { ConsentRecord } from "@shared/api/records";
 import { dateTime } from "@shared/format";
 import { type Paragraph, paragraphs } from "@shared/text";
@@ -8,11 +6,11 @@ import { Notice } from "@shared/ui/Notice";
 import { Points } from "@shared/ui/Points";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
-import { Link } from "wouter";
 import { type Key, useTexts } from "../../i18n";
 import { consentQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
+import { PaperPage } from "../../ui/PaperPage";
 import { useTitle } from "../../ui/page";
 import classes from "./ConsentPage.module.css";
 
@@ -20,21 +18,7 @@ export function ConsentPage({ id }: { readonly id: string }): JSX.Element {
   const { t } = useTexts();
   useTitle(t("consent.page"));
   return (
-    <div className={classes.page}>
-      <div className={classes.tools}>
-        <Button
-          component={Link}
-          href={`/sessions/${id}`}
-          variant="subtle"
-          color="gray"
-          leftSection={<Icon name="back" size={16} />}
-        >
-          {t("consent.back")}
-        </Button>
-        <Button leftSection={<Icon name="document" size={18} />} onClick={() => window.print()}>
-          {t("consent.print")}
-        </Button>
-      </div>
+    <PaperPage sessionId={id} back={t("consent.back")} print={t("consent.print")}>
       <Loaded query={useQuery(consentQuery(id))}>
         {(record) =>
           record === null ? (
@@ -46,7 +30,7 @@ export function ConsentPage({ id }: { readonly id: string }): JSX.Element {
           )
         }
       </Loaded>
-    </div>
+    </PaperPage>
   );
 }
 

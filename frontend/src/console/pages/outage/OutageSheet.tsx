@@ -1,23 +1,16 @@
-/**
- * A sheet of paper for the operator, printed before the participant comes: what to do if the server
- * fails in mid-session, and this session's steps to tick off by hand.
- *
- * It shows what the cockpit shows: a blinded operator's sheet has no conditions.
- */
-import { Button } from "@mantine/core";
 import type { SessionView, Step } from "@shared/api/types";
 import { dateTime, duration, latency } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { milliseconds, seconds } from "@shared/units";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { Link } from "wouter";
 import { groupSteps } from "../../cockpit/record/Timeline";
 import { type Key, useTexts } from "../../i18n";
 import { sessionQuery } from "../../queries";
 import { stepName } from "../../steps";
 import { Loaded } from "../../ui/Loaded";
 import { Order } from "../../ui/Order";
+import { PaperPage } from "../../ui/PaperPage";
 import { useTitle } from "../../ui/page";
 import { ScrollBox } from "../../ui/tables";
 import classes from "./OutageSheet.module.css";
@@ -26,24 +19,10 @@ export function OutageSheet({ id }: { readonly id: string }): JSX.Element {
   const { t } = useTexts();
   useTitle(t("outage.title"));
   return (
-    <div className={classes.page}>
-      <div className={classes.tools}>
-        <Button
-          component={Link}
-          href={`/sessions/${id}`}
-          variant="subtle"
-          color="gray"
-          leftSection={<Icon name="back" size={16} />}
-        >
-          {t("outage.back")}
-        </Button>
-        <Button leftSection={<Icon name="document" size={18} />} onClick={() => window.print()}>
-          {t("outage.print")}
-        </Button>
-      </div>
+    <PaperPage sessionId={id} back={t("outage.back")} print={t("outage.print")}>
       <p className={classes.lead}>{t("outage.lead")}</p>
       <Loaded query={useQuery(sessionQuery(id))}>{(session) => <Sheet session={session} />}</Loaded>
-    </div>
+    </PaperPage>
   );
 }
 
