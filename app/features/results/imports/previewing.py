@@ -1,6 +1,8 @@
 """Preview a file and check its mapping, without storing anything."""
 
 from collections import Counter
+from collections.abc import Mapping as Map
+from collections.abc import Sequence
 
 from sqlalchemy.orm import Session
 
@@ -10,6 +12,7 @@ from app.features.results.imports.applying import MISSING, Applied, Form, apply_
 from app.features.results.imports.offering import answer_columns, offer, used_columns
 from app.features.results.imports.proposing import likely_instrument, propose
 from app.features.results.imports.repository import active_import, import_view, imports_of
+from app.features.results.imports.scales import shift_of
 from app.features.results.imports.schemas import (
     CheckView,
     ConditionCount,
@@ -23,10 +26,9 @@ from app.features.results.imports.schemas import (
 )
 from app.features.results.imports.service import applied_to, known_instrument
 from app.features.results.imports.sheet import Sheet, read_sheet
-from app.features.results.imports.warnings import reversal_notes, shift_of
 from app.models import Study
 from app.protocol import sha256_of
-from app.science.instruments import Instrument, reversed_items
+from app.science.instruments import Instrument, reversal_doubts, reversed_items
 
 _EXAMPLES, _SHOWN_ROWS, _SHOWN_PROBLEMS, _SHOWN_WORDS = 6, 6, 200, 60
 _WIDTH = 80
@@ -87,7 +89,7 @@ def check(db: Session, study: Study, text: str, mapping: Mapping) -> CheckView:
         notes=[
             *_not_mapped(instrument, items),
             *_not_imported(left_out),
-            *reversal_notes(turning, applied.forms),
+            *_reversal_notes(turning, applied.forms),
         ],
         left_out=left_out,
         first_forms=[_preview(form) for form in applied.forms[:_SHOWN_ROWS]],
@@ -173,3 +175,11 @@ def _preview(form: Form) -> FormPreview:
         answers=form.answers,
         scores=form.scores,
     )
+
+
+def _reversal_notes(turning: Map[str, tuple[str, list[str]]], forms: Sequence[Form]) -> list[str]:
+    """Return notes on items that correlate positively with items that they should oppose."""
+    return [
+        f"{doubt}. If the file has already reversed it, mark it as reversed."
+        for doubt in reversal_doubts(turning, [form.answers for form in forms])
+    ]

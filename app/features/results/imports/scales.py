@@ -7,9 +7,11 @@ for a missing answer, words that are on several scales.
 """
 
 from collections.abc import Collection, Sequence
+from collections.abc import Mapping as Map
 from typing import Final
 
-from app.science.instruments import USUAL_MISSING_CODES
+from app.features.results.imports.schemas import Shift
+from app.science.instruments import USUAL_MISSING_CODES, Instrument
 
 AGREEMENT: Final[Sequence[Sequence[str]]] = tuple(
     tuple(words.split(", "))
@@ -129,3 +131,29 @@ def _whole(value: str) -> int | None:
 
 def _listed(codes: Sequence[int]) -> str:
     return " or ".join(map(str, codes))
+
+
+def shift_of(instrument: Instrument, numbers: Map[str, Sequence[float]]) -> Shift | None:
+    """Return the conversion to the scale if the file seems to count its steps from 0 or 1."""
+    found = []
+    for key, values in numbers.items():
+        scale = instrument.scale_of(instrument.by_key[key])
+        if scale is not None and values:
+            found.append((scale, min(values), max(values), all(v.is_integer() for v in values)))
+    if not found or not all(whole for *_, whole in found):
+        return None
+    scale = found[0][0]
+    if any((one.minimum, one.maximum, one.step) != (scale.minimum, scale.maximum, scale.step)
+           for one, *_ in found):  # fmt: skip
+        return None
+    low, high = min(low for _, low, _, _ in found), max(high for _, _, high, _ in found)
+    n = len(scale.steps)
+    for start in (1, 0):
+        multiply, add = float(scale.step), float(scale.minimum - scale.step * start)
+        if (multiply, add) != (1.0, 0.0) and start <= low and high <= n - 1 + start:
+            why = (
+                f"The numbers range from {low:g} to {high:g}; the scale has {n} steps from "
+                f"{scale.minimum} to {scale.maximum}. The file may count the steps from {start}."
+            )
+            return Shift(multiply=multiply, add=add, why=why)
+    return None

@@ -7,14 +7,15 @@ from app.database import Database
 from app.features.design.studies import add_version, study_by_key
 from app.features.movement.avatar import add_shipped_avatar
 from app.features.movement.humanoids import add_shipped_bodies
-from app.features.results.analysis.dashboard import drawings_of
+from app.features.results.analysis.dashboard import build_dashboard, drawings_of
 from app.features.results.analysis.material import OWN_BODY, read_material
 from app.features.results.analysis.questions import answers_of
 from app.features.results.analysis.questions.answers import BODIES, DECLARED
 from app.features.results.analysis.questions.relations import group_of
 from app.features.results.analysis.questions.words import bounded, p_words
 from app.features.results.analysis.schemas import MeasureView, ResultView, StatisticsResults
-from app.models import Contact, JointErrorRow, Participant, StudySession
+from app.models import Contact, JointErrorRow, Participant, Phase, StudySession
+from app.protocol import ROAD_KINDS
 from app.protocol.plan import Step
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.protocol.helpers import STUDY as FILE
@@ -340,3 +341,19 @@ def test_numbers_are_printed_in_apa_style() -> None:
     """Numbers are printed in APA style: no leading zero below 1, and a bound for a small p."""
     assert (p_words(0.0004), p_words(0.0125), p_words(1.0)) == ("p < .001", "p = .013", "p = 1.000")
     assert (bounded(-0.5, 2), bounded(1.0, 2), bounded(0.0, 2)) == ("−.50", "1.00", ".00")
+
+
+@pytest.mark.one_engine
+def test_figures_and_tests_of_boxes_leave_the_road_out(database: Database) -> None:
+    """With crossings instead of foot tasks every figure is drawn, and tests are of the hand."""
+    with database.writing() as db:
+        for code in ("P-0001", "P-0002", "P-0003"):
+            build_session(db, SessionSpec(code))
+        feet = update(Phase).where(Phase.limb == "foot")
+        db.execute(feet.values(kind=ROAD_KINDS[0], limb=None))
+    with database.reading() as db:
+        figures = {one.key: one.figure for one in build_dashboard(db, STUDY, "people").figures}
+        found = {one.key: one for one in answers_of(read_material(db, STUDY, "people")).measures}
+    assert None not in (figures["completions"], figures["contacts"], figures["joint_error_body"])
+    for measure in ("completions", "contact_time", "joint_error"):
+        assert {one.limb for one in found[measure].glance} == {"hand"}

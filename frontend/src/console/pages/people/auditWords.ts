@@ -114,6 +114,7 @@ export const KINDS = [
   "session",
   "capture",
   "tracker",
+  "performer",
   "avatar",
   "humanoid",
   "walking",
