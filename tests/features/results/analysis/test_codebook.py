@@ -24,11 +24,13 @@ def test_every_entry_has_a_meaning_and_a_type() -> None:
 
 
 def test_column_names_end_with_their_unit() -> None:
-    """A column in degrees, metres, seconds or milliseconds has the unit as its suffix."""
+    """A column in degrees, metres, seconds, milliseconds or m/s has the unit as its suffix."""
+    suffixes = {"_deg": "deg", "_m": "m", "_m_s": "m/s", "_s": "s", "_ms": "ms"}
     for column in CODEBOOK:
-        for suffix, unit in (("_deg", "deg"), ("_m", "m"), ("_s", "s"), ("_ms", "ms")):
-            if column.type == "number" and column.name.endswith(suffix):
-                assert column.unit.split(",")[0] == unit, column
+        longest = max((one for one in suffixes if column.name.endswith(one)), key=len, default="")
+        if column.type == "number" and longest:
+            assert column.unit.split(",")[0] == suffixes[longest], column
+        for suffix, unit in suffixes.items():
             if column.unit == unit:
                 assert column.name.endswith(suffix), column
         assert (column.type == "time") == column.name.endswith("_utc")
