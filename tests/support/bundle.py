@@ -24,10 +24,13 @@ SIMULATING = ("bodiesWorker-", "tryoutWorker-")
 # Run in the frontend's folder, so that its packages are found.
 BUILD = """
 import { build } from "vite";
+import { textTables } from "./textTables.ts";
+const source = process.cwd() + "/src";
+const alias = { "@shared": source + "/shared", "@charts": source + "/charts" };
 const [entry, outDir, base, entryFileNames, format] = JSON.parse(process.argv[1]);
 await build({
   configFile: false, root: "src", base, logLevel: "warn", publicDir: false,
-  resolve: { alias: { "@shared": process.cwd() + "/src/shared" } },
+  resolve: { alias }, plugins: [textTables(source, alias)],
   worker: { format: "es" },
   build: {
     outDir, emptyOutDir: false, modulePreload: false, assetsInlineLimit: 0,
