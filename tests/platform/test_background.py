@@ -22,7 +22,7 @@ from app.platform.workers import Worker
 from tests.features.lab import Lab, running_lab
 from tests.support.sqlite import fresh_sqlite
 
-PATIENCE_S = 20.0
+PATIENCE_S = 120.0
 
 
 @pytest.fixture
