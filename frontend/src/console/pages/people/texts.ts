@@ -112,7 +112,6 @@ export const peopleEn = {
   "blind.reason.fault": "Troubleshooting",
   "blind.log":
     "Hidden while the session is blinded: latencies, and the hashes that would reveal them.",
-  "log.blinding_lifted": "condition shown to the lab",
 };
 
 export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
@@ -229,5 +228,4 @@ export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
   "blind.reason.fault": "Fehlersuche",
   "blind.log":
     "Verborgen, solange die Sitzung verblindet ist: Latenzen und die Prüfsummen, die sie verraten würden.",
-  "log.blinding_lifted": "Bedingung dem Labor gezeigt",
 };
