@@ -5,6 +5,7 @@ import csv
 import hashlib
 import io
 import json
+import time
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -99,9 +100,10 @@ def _check_results(server: LiveServer) -> None:
 def _check_export(api: Any, report: RehearsalReport) -> None:
     body = {"kind": "simulated", "movement": True}
     job = ok(api.post("/api/studies/road-short/exports", json=body))
-    while job["status"] not in ("done", "failed"):
+    while job["state"] not in ("ready", "done", "failed"):
+        time.sleep(0.2)
         job = ok(api.get(f"/api/exports/{job['id']}"))
-    assert job["status"] == "done", job
+    assert job["state"] != "failed", job
     archive = zipfile.ZipFile(io.BytesIO(api.get(f"/api/exports/{job['id']}/file").content))
     names = {Path(name).name: name for name in archive.namelist()}
     table = archive.read(names["road_crossings.csv"]).decode()

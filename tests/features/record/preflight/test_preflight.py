@@ -254,4 +254,4 @@ def test_sessions_without_participants_need_no_overrides(lab: Lab, kind: str) ->
     session_id = lab.join(kind=kind)["id"]
     reply = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
     assert reply["asks"] is False
-    assert len(reply["checks"]) == 13
+    assert len(reply["checks"]) == 14

@@ -110,7 +110,7 @@ def latency_figure(
     limbs = [limb for limb in LIMBS if (values["limb"] == limb).any()]
     places = sorted(float(place) for place in values[across.column].unique())
     figure = new_figure(
-        titles=tuple(f"{limb.capitalize()} task" for limb in limbs), shared_yaxes=True
+        titles=tuple(f"{limb.capitalize()} task" for limb in limbs) or ("",), shared_yaxes=True
     )
     latency_axis(figure, places)
     for column, limb in enumerate(limbs, start=1):

@@ -45,7 +45,9 @@ def learning_drawing(phases: pd.DataFrame) -> Drawing:
 def _drawing(
     key: str, title: str, words: str, phases: pd.DataFrame, across: Across = LATENCY
 ) -> Drawing:
-    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)].astype({"completions": "float64"})
+    # On the road nothing is completed with a limb.
+    counted = phases["phase_kind"].isin(COUNTED_KINDS) & phases["limb"].notna()
+    tasks = phases[counted].astype({"completions": "float64"})
     n = participants(tasks)
     if n < MIN_PARTICIPANTS:
         return too_few(key, title, words, n, "a finished hand or foot phase")
