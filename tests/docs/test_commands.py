@@ -384,7 +384,10 @@ def _problem_of(command: Command) -> str | None:
 
 
 def _problem_of_bench(arguments: list[str]) -> str | None:
-    if arguments[:1] not in ([], ["NAME"], ["all"], ["..."], ["--help"]) and arguments[0] not in NAMES:
+    if (
+        arguments[:1] not in ([], ["NAME"], ["all"], ["..."], ["--help"])
+        and arguments[0] not in NAMES
+    ):
         return f"no benchmark {arguments[0]}"
     known = {option for action in parser()._actions for option in action.option_strings}
     unknown = [word for word in arguments if word.startswith("--") and word not in known]
