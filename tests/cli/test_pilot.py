@@ -60,6 +60,9 @@ def test_the_text_marks_itself_and_states_assumptions() -> None:
     assert "processor time" in result.stderr
     own = _COMMAND.run("power", "four-latencies-williams", "--participants", "6", "--sets", "20")
     assert own.stdout.startswith("SIMULATED: the power of the preregistered test")
+    # It declares no rule on straight-lined forms, so nobody is lost for one.
+    (lost,) = [line for line in own.stdout.splitlines() if "are not in the test" in line]
+    assert "straight-lined" not in lost
 
 
 def test_power_is_not_given_where_nobody_finishes(tmp_path: Path) -> None:

@@ -92,38 +92,33 @@ def _check_header(path: Path, header: object) -> None:
 
 def _header(fit: FittedWalking, rules: FollowingRules) -> dict[str, Any]:
     base, static = fit.database, fit.static
-    # Files without caveats stay as they were, with the hash that they had.
-    caveats = {"caveats": list(fit.caveats)} if fit.caveats else {}
-    return (
-        _travel_times(fit)
-        | caveats
-        | {
-            "format": FORMAT,
-            "version": VERSION,
-            "parameters": [asdict(one) for one in base.grid.parameters],
-            "values": [list(values) for values in base.grid.values],
-            "metric": base.metric,
-            "names": list(base.names),
-            "subjects": list(base.subjects),
-            "sources": list(base.sources),
-            "kinds": list(base.kinds),
-            "rules": asdict(rules),
-            "seed": fit.options.seed,
-            "k": fit.options.k,
-            "entries": fit.options.entries,
-            "reading": asdict(fit.reading),
-            "reading_chosen": fit.options.reading is None,
-            "scores": [
-                {"options": asdict(one.options), "crps_s": one.crps_s} for one in fit.scores
-            ],
-            "static": {
-                "vector": static.vector.tolist(),
-                "deviation": static.deviation,
-                "node": static.node.tolist(),
-                "node_deviation": static.node_deviation,
-            },
-        }
-    )
+    return {
+        **_travel_times(fit),
+        "format": FORMAT,
+        "version": VERSION,
+        "parameters": [asdict(one) for one in base.grid.parameters],
+        "values": [list(values) for values in base.grid.values],
+        "metric": base.metric,
+        "names": list(base.names),
+        "subjects": list(base.subjects),
+        "sources": list(base.sources),
+        "kinds": list(base.kinds),
+        "rules": asdict(rules),
+        "seed": fit.options.seed,
+        "k": fit.options.k,
+        "entries": fit.options.entries,
+        "reading": asdict(fit.reading),
+        "reading_chosen": fit.options.reading is None,
+        "scores": [{"options": asdict(one.options), "crps_s": one.crps_s} for one in fit.scores],
+        "static": {
+            "vector": static.vector.tolist(),
+            "deviation": static.deviation,
+            "node": static.node.tolist(),
+            "node_deviation": static.node_deviation,
+        },
+        # Files without caveats stay as they were, with the hash that they had.
+        **({"caveats": list(fit.caveats)} if fit.caveats else {}),
+    }
 
 
 def _travel_times(fit: FittedWalking) -> dict[str, Any]:

@@ -71,10 +71,12 @@ def _lost(curve: Curve) -> str | None:
     words = {
         "dropout": "stop, {} in each block",
         "excluded": "are excluded for a technical reason, {}",
-        "answering.straight_lining": "hand in straight-lined forms, {} of all forms, of which the"
-        " declared exclusions allow few or none",
+        "answering.straight_lining": "hand in more straight-lined forms, {} of all forms, than a"
+        " declared exclusion allows",
     }
     stated = {one["name"]: one["value"] for one in curve.header["assumptions"]}
+    if all(one["rule"] != "maximum_straight_lined_forms" for one in curve.header["exclusions"]):
+        stated.pop("answering.straight_lining", None)
     reasons = [text.format(f"{stated[name]:g}") for name, text in words.items() if stated.get(name)]
     return (
         f"{100.0 * (1.0 - left / started):.0f} % of those who start are not in the test. As"

@@ -84,6 +84,7 @@ def power_of(file: StudyFile, order: PowerOrder, now: Callable[[str], None]) -> 
         "alpha": simulated.declared.alpha,
         "preregistered": protocol.preregistration is not None,
         "test": simulated.declared.primary.model_dump(mode="json"),
+        "exclusions": [one.model_dump(mode="json") for one in simulated.declared.exclusions],
         "assumed_difference": simulated.assumed_difference(plan.seed),
         "assumptions": loaded.assumptions.stated(),
     }

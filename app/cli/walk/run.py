@@ -131,21 +131,19 @@ class Sampled:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be known before these draws are believed."""
-        unused = (
-            f"the model was fitted without statures, so --stature {self.order.stature_m:g} changes"
-            " nothing; fit it again with --people to learn from them"
-            if self.order.stature_m is not None and STATURE not in self.fit.database.names
-            else None
-        )
-        base = self.fit.database
-        guessed = []
+        base, found = self.fit.database, []
+        if self.order.stature_m is not None and STATURE not in base.names:
+            found.append(
+                f"the model was fitted without statures, so --stature {self.order.stature_m:g}"
+                " changes nothing; fit it again with --people to learn from them"
+            )
         for name in self.fit.outside(self.dependencies):
             seen = base.vectors[:, base.names.index(name)]
-            guessed.append(
+            found.append(
                 f"{name} {self.dependencies[name]:.2f} is outside what the model has seen,"
                 f" {seen.min():.2f} to {seen.max():.2f}: this is a guess"
             )
-        return (*([unused] if unused else []), *guessed, *self.fit.caveats)
+        return (*found, *self.fit.caveats)
 
 
 @dataclass(frozen=True, eq=False)
