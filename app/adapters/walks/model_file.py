@@ -58,9 +58,7 @@ def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
             header = json.loads(archive["header"].tobytes().decode())
             tables = {name: archive[name] for name in _TABLES}
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise WalkingError(
-            f"{path}: not a walking model ({error}); `./run walk fit` writes one."
-        ) from error
+        raise WalkingError(f"{path}: not a walking model; `./run walk fit` writes one.") from error
     _check_header(path, header)
     digest = str(header.pop("content_hash", ""))
     if digest != content_hash(header, tables):
