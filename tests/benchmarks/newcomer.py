@@ -18,7 +18,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, Locator, Page, ViewportSize
 
 from tests.benchmarks.report import Figure, Report
-from tests.benchmarks.thousand import shipped_database
+from tests.benchmarks.thousand import shipped_database, summaries_of
 from tests.features.builders import STUDY, SessionSpec, build_session
 from tests.support.browser import launched_browser, take_screenshot
 from tests.support.server import ADMIN_PASSWORD, LiveServer
@@ -101,7 +101,8 @@ def _tables(browser: Browser, folder: Path) -> Iterator[Figure]:
     database = shipped_database(server.data_dir)
     with database.writing() as db:
         for at in range(SESSIONS):
-            build_session(db, SessionSpec(f"SIM-{at:04d}", kind="simulated"))
+            built = build_session(db, SessionSpec(f"SIM-{at:04d}", kind="simulated"))
+            db.add_all(summaries_of(db, built))
     database.close()
     with server, _signed_in(browser, server) as newcomer:
         page, began_s = newcomer.page, time.monotonic()

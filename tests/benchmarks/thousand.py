@@ -72,7 +72,7 @@ def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
     with database.writing() as db:
         built = [build_session(db, SessionSpec(f"P-{at:04d}")) for at in range(ORDERS)]
         for session in built:
-            db.add_all(_summarised(db, session))
+            db.add_all(summaries_of(db, session))
     sessions = [session.id for session in built]
     for first in range(ORDERS, participants, 50):
         with database.writing() as db:
@@ -81,8 +81,12 @@ def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
     return sessions
 
 
-def _summarised(db: Session, session: StudySession) -> list[PhaseQuality]:
-    """Store the summaries of a phase, since a server would compute any that are missing."""
+def summaries_of(db: Session, session: StudySession) -> list[PhaseQuality]:
+    """Return summaries of a built session's phases, as a finished session has them.
+
+    A server that starts would compute any that are missing, and then judge the session again by its
+    log of phases, which a built session lacks: it would no longer count.
+    """
     phases = db.scalars(select(Phase).where(Phase.session_id == session.id)).all()
     return [
         PhaseQuality(

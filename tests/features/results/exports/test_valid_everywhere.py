@@ -65,6 +65,8 @@ def test_a_session_that_is_not_valid_is_left_out_everywhere(
         counting = {row["participant_code"] for row in rows_of(tree[f"{name}.csv"]) if valid(row)}
         assert counting == {"P-0001", "P-0002"}, name
     assert b"reasons_not_valid" in tree["README.txt"]
+    assert b"Not valid         1 completed" in tree["README.txt"]
+    assert [row["participant_code"] for row in rows_of(tree["wide.csv"])] == ["P-0001", "P-0002"]
 
 
 def valid(row: dict[str, str]) -> bool:

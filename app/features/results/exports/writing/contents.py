@@ -19,6 +19,7 @@ from app.features.people.audit import TrailHead, head_of
 from app.features.record.receipts import receipt_of
 from app.features.record.telemetry import epochs_of
 from app.features.results.analysis.codebook import codebook_frame
+from app.features.results.analysis.material import n_not_valid
 from app.features.results.analysis.questions import WideColumn, wide_table
 from app.features.results.analysis.tables import (
     Kind,
@@ -268,6 +269,13 @@ class Contents:
         statuses = {str(key): int(n) for key, n in sessions["status"].value_counts().items()}
         blinded = int(sessions["session_id"].isin(list(self.hidden)).sum())
         origin = Origin(
-            self.study_key, self.kind, self.now, self.audit_head, hashes, statuses, blinded
+            study_key=self.study_key,
+            kind=self.kind,
+            now=self.now,
+            audit_head=self.audit_head,
+            versions=hashes,
+            statuses=statuses,
+            not_valid=n_not_valid(sessions),
+            blinded=blinded,
         )
         return readme_text(origin, self.files, rules=rules)

@@ -68,8 +68,9 @@ _UNCOUNTED = (
 class Origin:
     """The origin of an export; `versions` maps version numbers to content hashes.
 
-    `audit_head`: the newest entry of the audit trail at that moment. `blinded`: how many of its
-    sessions are written without their condition.
+    `audit_head`: the newest entry of the audit trail at that moment. `not_valid`: how many
+    completed sessions do not count by their study's rules. `blinded`: how many sessions are written
+    without their condition.
     """
 
     study_key: str
@@ -78,6 +79,7 @@ class Origin:
     audit_head: TrailHead
     versions: Mapping[int, str]
     statuses: Mapping[str, int]
+    not_valid: int = 0
     blinded: int = 0
 
 
@@ -109,6 +111,7 @@ def readme_text(origin: Origin, files: Sequence[FileCount], *, rules: bool = Tru
         f"Kind of sessions  {origin.kind}",
         f"Sessions          {sum(origin.statuses.values())}"
         + (f" ({statuses})" if statuses else ""),
+        *([f"Not valid         {origin.not_valid} completed"] if origin.not_valid else ()),
         f"Audit head        {origin.audit_head}",
         *_warning(origin.kind),
         *(_blinded(origin.blinded) if origin.blinded else ()),
