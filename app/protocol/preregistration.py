@@ -158,22 +158,29 @@ class Preregistration(Strict):
     exclusions: Annotated[tuple[ExclusionRule, ...], Field(max_length=20)] = ()
     registration: Annotated[str, StringConstraints(max_length=300)] = ""
 
-    def outcome_of(self, values: "FloatArray", levels: tuple[str, ...]) -> Outcome:
+    def outcome_of(
+        self,
+        values: "FloatArray",
+        levels: tuple[str, ...],
+        labels: Mapping[str, str] | None = None,
+    ) -> Outcome:
         """Run the declared test; people's data and simulated ones are tested alike.
 
         Args:
             values: (n participants, k conditions) complete values of the declared measure.
             levels: keys of the conditions, by ascending added latency.
+            labels: what the outcome calls them, all different; their keys by default.
 
         Raises:
             StatisticsError: the values do not allow the test.
         """
         primary = self.primary
+        names = dict(zip(levels, levels, strict=True)) | dict(labels or {})
         sample = Sample(
             values=values,
-            levels=levels,
+            levels=tuple(names[level] for level in levels),
             direction=primary.direction,
-            reference=primary.reference,
+            reference=None if primary.reference is None else names[primary.reference],
             holm=primary.correction == "holm",
             alpha=self.alpha,
         )

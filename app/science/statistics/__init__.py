@@ -35,7 +35,7 @@ from app.science.statistics.error_rates import (
     error_rates_from_json,
 )
 from app.science.statistics.errors import ConstantData, StatisticsError, TooFewData, UnusableTable
-from app.science.statistics.exploring import explore
+from app.science.statistics.exploring import Explored, explore
 from app.science.statistics.friedman import Friedman, friedman
 from app.science.statistics.levels import as_number, has_order, ordered_levels, place_of
 from app.science.statistics.mean_intervals import mean_interval, within_subject_intervals
@@ -74,6 +74,7 @@ __all__ = [
     "ErrorRate",
     "ErrorRates",
     "Expected",
+    "Explored",
     "FloatArray",
     "Friedman",
     "IntArray",

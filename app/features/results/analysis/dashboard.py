@@ -53,7 +53,7 @@ def dashboard_of(
         avatar=sorted(set(filtered.sessions["avatar"])),
         filter=chosen,
         choices=_choices(material),
-        figures=[_view(drawing) for drawing in drawings_of(material, chosen, group)],
+        figures=[_view(drawing, chosen.body) for drawing in drawings_of(material, chosen, group)],
     )
 
 
@@ -109,7 +109,9 @@ def _choices(material: Material) -> FilterChoices:
     )
 
 
-def _view(drawing: Drawing) -> FigureView:
+def _view(drawing: Drawing, body: str | None) -> FigureView:
+    """Return a drawing as a view; where bodies are analysed one at a time, so are its tests."""
+    measure = drawing.measure and "_".join(filter(None, (drawing.measure, body)))
     return FigureView(
         key=drawing.key,
         title=drawing.title,
@@ -119,4 +121,5 @@ def _view(drawing: Drawing) -> FigureView:
         n=drawing.n,
         group=drawing.group,
         wide=drawing.wide,
+        measure=measure or None,
     )

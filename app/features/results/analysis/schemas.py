@@ -12,7 +12,9 @@ MAX_PARTICIPANTS = 200
 _SHOWN = 6
 Kind = Literal["people", "simulated", "test", "all"]
 DashboardKind = Literal["people", "simulated", "test"]
-FigureGroup = Literal["progress", "embodiment", "answers", "tasks", "movement", "quality"]
+FigureGroup = Literal[
+    "progress", "embodiment", "answers", "tasks", "movement", "demographics", "quality"
+]
 
 
 class FigureFilter(BaseModel):
@@ -94,7 +96,8 @@ class GroupQuery(DashboardQuery):
 class FigureView(BaseModel):
     """A figure for plotly.js, or a sentence (`empty`) that says what is missing; `n` participants.
 
-    `wide`: the figure needs the full width of the page.
+    `wide`: the figure needs the full width of the page. `measure`: the measure of the statistics
+    that has the tests of what is drawn; null if there are none.
     """
 
     key: str
@@ -105,6 +108,7 @@ class FigureView(BaseModel):
     n: int
     group: FigureGroup
     wide: bool
+    measure: str | None
 
 
 class FilterChoices(BaseModel):

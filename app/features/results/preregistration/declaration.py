@@ -3,8 +3,11 @@
 from dataclasses import dataclass
 from datetime import datetime
 
-from app.features.design.studies import protocol_of
-from app.features.results.preregistration.schemas import DeclarationView
+from sqlalchemy.orm import Session
+
+from app.features.design.instruments import instrument_of
+from app.features.design.studies import instrument_for, protocol_of
+from app.features.results.preregistration.schemas import DeclarationView, PrimaryNames
 from app.models import StudyVersion
 from app.protocol import ExclusionRule, Preregistration, PrimaryTest
 from app.science.statistical_tests import statistical_test
@@ -31,7 +34,7 @@ class Declared:
     preregistration: Preregistration
     version: StudyVersion
 
-    def view(self, frozen_at: datetime | None) -> DeclarationView:
+    def view(self, frozen_at: datetime | None, names: PrimaryNames) -> DeclarationView:
         """Return the declaration as a response model."""
         own = self.preregistration
         return DeclarationView(
@@ -43,6 +46,7 @@ class Declared:
             alpha=own.alpha,
             planned_n=own.planned_n,
             section=own,
+            names=names,
             primary_words=primary_words(own.primary),
             rules=[rule_words(rule) for rule in own.exclusions],
         )
@@ -67,6 +71,24 @@ def declaration_of(versions: list[StudyVersion]) -> Declared | None:
             break
         first = version
     return Declared(newest, first)
+
+
+def names_in(db: Session, declared: Declared) -> PrimaryNames:
+    """Return the names of what the primary test refers to, as of the version that declared it."""
+    primary, version = declared.preregistration.primary, declared.version
+    conditions = {one.key: one.label for one in protocol_of(version).conditions}
+    names = PrimaryNames(
+        instrument=None,
+        score=None,
+        reference=None if primary.reference is None else dict(conditions[primary.reference]),
+    )
+    if primary.instrument is None:
+        return names
+    instrument = instrument_of(instrument_for(db, version, primary.instrument))
+    labels = {one.key: dict(one.label) for one in instrument.scores}
+    return names.model_copy(
+        update={"instrument": dict(instrument.title), "score": labels.get(primary.score or "")}
+    )
 
 
 def primary_words(primary: PrimaryTest) -> str:

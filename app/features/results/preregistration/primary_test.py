@@ -1,5 +1,6 @@
 """Compute the primary test exactly as declared, with the functions of the test registry."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,10 +18,14 @@ _COLUMNS = {"contact_time": "side_red_s", "completions": "completions"}
 
 @dataclass(frozen=True, eq=False)
 class Values:
-    """The values of the complete participants x conditions, and who lacks a value (`lacking`)."""
+    """The values of the complete participants x conditions, and who lacks a value (`lacking`).
+
+    `levels`: the keys of the conditions. `labels`: what the study calls them, by key.
+    """
 
     values: FloatArray
     levels: tuple[str, ...]
+    labels: Mapping[str, str]
     people: tuple[str, ...]
     lacking: tuple[str, ...]
 
@@ -46,13 +51,24 @@ def values_of(
     complete = wide.dropna()
     lacking = [str(code) for code in wide.index if code not in complete.index]
     return Values(
-        complete.to_numpy(dtype=np.float64), tuple(keys), tuple(complete.index), tuple(lacking)
+        values=complete.to_numpy(dtype=np.float64),
+        levels=tuple(keys),
+        labels=_labels(protocol),
+        people=tuple(complete.index),
+        lacking=tuple(lacking),
     )
+
+
+def _labels(protocol: StudyProtocol) -> dict[str, str]:
+    """Return the English names of the conditions; their keys if two have the same name."""
+    language = "en" if "en" in protocol.languages else protocol.languages[0]
+    labels = {one.key: one.label[language] for one in protocol.conditions}
+    return labels if len(set(labels.values())) == len(labels) else {key: key for key in labels}
 
 
 def make_test(declared: Preregistration, found: Values) -> PrimaryResult:
     """Compute the declared test; raise StatisticsError if the data do not allow it."""
-    outcome = declared.outcome_of(found.values, found.levels)
+    outcome = declared.outcome_of(found.values, found.levels, found.labels)
     return PrimaryResult(
         n=outcome.n,
         sentence=outcome.sentence,

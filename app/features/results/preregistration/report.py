@@ -7,7 +7,7 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies import newest_version, protocol_of, versions_of
 from app.features.results.analysis.tables import Kind, corrections_table
-from app.features.results.preregistration.declaration import Declared, declared_in
+from app.features.results.preregistration.declaration import Declared, declared_in, names_in
 from app.features.results.preregistration.deviations import deviations_of
 from app.features.results.preregistration.exclusions import OVER, Tables, exclude, read_tables
 from app.features.results.preregistration.primary_test import Values, make_test, values_of
@@ -36,7 +36,7 @@ def completed_view(
     result, why = _result(declared, found)
     return view.model_copy(
         update={
-            "declaration": declared.view(_frozen_at(versions, declared)),
+            "declaration": declared.view(_frozen_at(versions, declared), names_in(db, declared)),
             "sessions": int(tables.sessions["status"].isin(OVER).sum()),
             "excluded": excluded.found,
             "included": len(found.people),

@@ -23,11 +23,22 @@ DeviationCode = Literal[
 ]
 
 
+class PrimaryNames(BaseModel):
+    """What study and instrument call what the primary test names by key, each by language.
+
+    Null for what it does not name.
+    """
+
+    instrument: dict[str, str] | None
+    score: dict[str, str] | None
+    reference: dict[str, str] | None
+
+
 class DeclarationView(BaseModel):
     """The declaration, with the first version that made it; `content_hash` identifies the version.
 
     `section` is the declaration in the study file. `frozen_at`: when the first session of a version
-    with this declaration started.
+    with this declaration started. `names`: for the keys in its primary test.
     """
 
     version: int
@@ -38,6 +49,7 @@ class DeclarationView(BaseModel):
     alpha: float
     planned_n: int
     section: Preregistration
+    names: PrimaryNames
     primary_words: str
     rules: list[str]
 

@@ -2,6 +2,7 @@
 import { Paper, Title } from "@mantine/core";
 import type { Declaration } from "@shared/api/analysis";
 import { dateTime } from "@shared/format";
+import { inLanguage } from "@shared/text";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import classes from "./Preregistration.module.css";
@@ -22,7 +23,7 @@ export function DeclarationCard({
       <dl className={classes.facts}>
         <dt>{t("prereg.primary")}</dt>
         <dd>
-          <Primary primary={declaration.section.primary} />
+          <Primary declaration={declaration} />
         </dd>
         <dt>α</dt>
         <dd>{declaration.alpha}</dd>
@@ -59,26 +60,26 @@ export function DeclarationCard({
 }
 
 /** The preregistered test in words: test, measure, limb, direction. */
-export function Primary({
-  primary,
-}: {
-  readonly primary: Declaration["section"]["primary"];
-}): JSX.Element {
-  const { t } = useTexts();
+export function Primary({ declaration }: { readonly declaration: Declaration }): JSX.Element {
+  const { t, language } = useTexts();
+  const { primary } = declaration.section;
+  const { names } = declaration;
+  const named = (name: Readonly<Record<string, string>> | null, key: string | null | undefined) =>
+    inLanguage(name, language) || (key ?? "");
   const measure =
     primary.measure === "score"
       ? t("prereg.words.score", {
-          score: primary.score ?? "",
-          instrument: primary.instrument ?? "",
+          score: named(names.score, primary.score),
+          instrument: named(names.instrument, primary.instrument),
         })
       : t(`value.${primary.measure}`);
   const limb = primary.limb === "both" ? t("value.both") : t(`prereg.words.${primary.limb}`);
   const direction = t(`value.${primary.direction ?? "two_sided"}`);
-  const reference = primary.reference ?? null;
+  const reference = named(names.reference, primary.reference);
   return (
     <>
       {t("prereg.words", { test: t(`value.${primary.test}`), measure, limb, direction })}
-      {reference !== null && ` ${t("prereg.words.reference", { reference })}`}
+      {reference !== "" && ` ${t("prereg.words.reference", { reference })}`}
       {primary.correction === "holm" && ` ${t("prereg.words.holm")}`}
     </>
   );

@@ -5606,7 +5606,7 @@ export interface components {
          * @description The declaration, with the first version that made it; `content_hash` identifies the version.
          *
          *     `section` is the declaration in the study file. `frozen_at`: when the first session of a version
-         *     with this declaration started.
+         *     with this declaration started. `names`: for the keys in its primary test.
          */
         readonly DeclarationView: {
             /** Alpha */
@@ -5620,6 +5620,7 @@ export interface components {
             readonly created_at: string;
             /** Frozen At */
             readonly frozen_at: string | null;
+            readonly names: components["schemas"]["PrimaryNames"];
             /** Planned N */
             readonly planned_n: number;
             /** Primary Words */
@@ -6276,7 +6277,8 @@ export interface components {
          * FigureView
          * @description A figure for plotly.js, or a sentence (`empty`) that says what is missing; `n` participants.
          *
-         *     `wide`: the figure needs the full width of the page.
+         *     `wide`: the figure needs the full width of the page. `measure`: the measure of the statistics
+         *     that has the tests of what is drawn; null if there are none.
          */
         readonly FigureView: {
             /** Caption */
@@ -6291,9 +6293,11 @@ export interface components {
              * Group
              * @enum {string}
              */
-            readonly group: "progress" | "embodiment" | "answers" | "tasks" | "movement" | "quality";
+            readonly group: "progress" | "embodiment" | "answers" | "tasks" | "movement" | "demographics" | "quality";
             /** Key */
             readonly key: string;
+            /** Measure */
+            readonly measure: string | null;
             /** N */
             readonly n: number;
             /** Title */
@@ -9190,6 +9194,26 @@ export interface components {
             readonly scores: readonly components["schemas"]["FormulaView"][];
             /** Seed */
             readonly seed: number;
+        };
+        /**
+         * PrimaryNames
+         * @description What study and instrument call what the primary test names by key, each by language.
+         *
+         *     Null for what it does not name.
+         */
+        readonly PrimaryNames: {
+            /** Instrument */
+            readonly instrument: {
+                readonly [key: string]: string;
+            } | null;
+            /** Reference */
+            readonly reference: {
+                readonly [key: string]: string;
+            } | null;
+            /** Score */
+            readonly score: {
+                readonly [key: string]: string;
+            } | null;
         };
         /**
          * PrimaryResult
@@ -17018,7 +17042,7 @@ export interface operations {
         readonly parameters: {
             readonly query?: {
                 readonly body?: string | null;
-                readonly group?: ("progress" | "embodiment" | "answers" | "tasks" | "movement" | "quality") | null;
+                readonly group?: ("progress" | "embodiment" | "answers" | "tasks" | "movement" | "demographics" | "quality") | null;
                 readonly kind?: "people" | "simulated" | "test";
                 readonly limb?: ("hand" | "foot") | null;
                 readonly order?: string | null;

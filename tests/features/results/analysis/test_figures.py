@@ -118,6 +118,7 @@ def test_scores_that_are_missing_do_not_count() -> None:
     scores = pd.DataFrame(
         {
             "participant_code": ["P-1", "P-2", "P-3"],
+            "instrument": "karas2020",
             "score": "agency",
             "limb": "hand",
             "position": 1,

@@ -15,6 +15,7 @@ from tests.features.builders import NOW, STUDY, SessionSpec, build_session, buil
 from tests.protocol.helpers import STUDY as FILE
 from tests.protocol.test_preregistration import SECTION
 
+LABELS = ["no added latency", "125 ms added", "350 ms added"]
 LATER = NOW + timedelta(days=30)
 
 
@@ -93,6 +94,8 @@ def test_the_declared_test_is_run_and_deviations_are_listed(database: Database) 
     assert view.result is not None
     assert view.result.n == 4
     assert view.result.sentence.startswith("L = ")
+    assert [row[0] for row in view.result.rows] == LABELS
+    assert view.declaration.names.score == {"en": "Agency", "de": "Handlungsurheberschaft"}
     reported = codes_of(view)
     assert "n_short" in reported
     assert "left_out_by_hand" not in reported

@@ -6,6 +6,7 @@ where there is too little to draw, one plain sentence on what is missing.
 
 from app.features.results.analysis.figures.achieved import achieved_drawing
 from app.features.results.analysis.figures.body_map import joint_error_body_drawing
+from app.features.results.analysis.figures.by_demographics import demographics_drawings
 from app.features.results.analysis.figures.completions import completions_drawing, learning_drawing
 from app.features.results.analysis.figures.contact_map import contact_map_drawing
 from app.features.results.analysis.figures.contacts import contacts_drawing
@@ -33,6 +34,7 @@ __all__ = [
     "completions_drawing",
     "contact_map_drawing",
     "contacts_drawing",
+    "demographics_drawings",
     "embodiment_drawings",
     "exclusions_drawing",
     "joint_error_blocks_drawing",

@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 
 MIN_PARTICIPANTS = 1
 """Even one participant's line is drawn; an interval needs two participants."""
-Group = Literal["progress", "embodiment", "answers", "tasks", "movement", "quality"]
+Group = Literal["progress", "embodiment", "answers", "tasks", "movement", "demographics", "quality"]
 
 
 @dataclass(frozen=True)
@@ -18,6 +18,7 @@ class Drawing:
 
     `n`: number of participants. `data`: the rows that were drawn, for a file. `wide`: the figure
     needs the full width of the page. `every_body`: it has all bodies, even if one was chosen.
+    `measure`: the measure of the statistics page that has the tests of what is drawn.
     """
 
     key: str
@@ -30,6 +31,7 @@ class Drawing:
     group: Group = "tasks"
     wide: bool = False
     every_body: bool = False
+    measure: str = ""
 
     def as_json(self) -> dict[str, Any] | None:
         """Return the figure in the form that plotly.js reads, or None if there is no figure."""
@@ -53,6 +55,10 @@ class Drawing:
         if self.figure is not None:
             self.figure.update_layout(title_text=title)
         return replace(self, title=title, caption=f"{self.caption} {note}".strip())
+
+    def tested_as(self, measure: str) -> "Drawing":
+        """Return a copy that leads to the tests of this measure on the statistics page."""
+        return replace(self, measure=measure)
 
     def of_group(self, group: Group, *, wide: bool = False) -> "Drawing":
         """Return a copy that belongs to a group of figures on the page."""

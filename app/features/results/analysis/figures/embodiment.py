@@ -51,4 +51,5 @@ def _component(score: str, title: str, axis: str, rows: pd.DataFrame) -> Drawing
     )
     possible = f"Possible scores run from {low:g} to {high:g}." if bounded else ""
     caption = f"{MEANS} {count_note(n)} {possible} {limb_note(rows)}"
-    return drawn(key, title, caption, n, figure, drawn_rows(values, "points"))
+    drawing = drawn(key, title, caption, n, figure, drawn_rows(values, "points"))
+    return drawing.tested_as(f"{rows['instrument'].iloc[0]}_{score}")

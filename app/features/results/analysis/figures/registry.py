@@ -14,6 +14,7 @@ from app.features.record.ledger import planned_slots
 from app.features.results.analysis.figures.achieved import achieved_drawing
 from app.features.results.analysis.figures.body_map import joint_error_body_drawing
 from app.features.results.analysis.figures.by_body import by_body_drawings
+from app.features.results.analysis.figures.by_demographics import demographics_drawings
 from app.features.results.analysis.figures.completions import completions_drawing, learning_drawing
 from app.features.results.analysis.figures.contact_map import contact_map_drawing
 from app.features.results.analysis.figures.contacts import contacts_drawing
@@ -120,13 +121,17 @@ FIGURES: tuple[Figure, ...] = (
         ),
     ),
     Figure("tasks", lambda rows: rows.by_body("tasks")),
-    Figure.one("tasks", lambda rows: completions_drawing(rows.phases)),
+    Figure.one("tasks", lambda rows: completions_drawing(rows.phases).tested_as("completions")),
     Figure.one("tasks", lambda rows: learning_drawing(rows.phases)),
-    Figure.one("tasks", lambda rows: contacts_drawing(rows.touching, rows.contacts), wide=True),
+    Figure.one(
+        "tasks",
+        lambda rows: contacts_drawing(rows.touching, rows.contacts).tested_as("contact_time"),
+        wide=True,
+    ),
     Figure.one("tasks", lambda rows: contact_map_drawing(rows.touching, rows.contacts)),
     Figure("movement", lambda rows: rows.by_body("movement")),
     Figure.one("movement", lambda rows: joint_error_body_drawing(rows.errors)),
-    Figure.one("movement", lambda rows: joint_error_drawing(rows.errors)),
+    Figure.one("movement", lambda rows: joint_error_drawing(rows.errors).tested_as("joint_error")),
     Figure.one("movement", lambda rows: achieved_drawing(rows.phases)),
     Figure.one("movement", lambda rows: joint_error_blocks_drawing(rows.errors)),
     Figure.one(
@@ -134,6 +139,14 @@ FIGURES: tuple[Figure, ...] = (
     ),
     Figure.one("movement", lambda rows: joint_error_map_drawing(rows.errors), wide=True),
     Figure("movement", lambda rows: joint_error_fingers_drawings(rows.errors)),
+    Figure(
+        "demographics",
+        lambda rows: demographics_drawings(
+            rows.counting(rows.filtered.scores),
+            rows.counting(rows.filtered.answers),
+            rows.filtered.instruments,
+        ),
+    ),
     Figure.one("quality", lambda rows: quality_drawing(rows.counting(rows.filtered.quality))),
     Figure.one(
         "quality",

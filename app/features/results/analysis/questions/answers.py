@@ -7,6 +7,7 @@ not declare alpha, the usual 5 % is used, and the results say that it was not de
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
+from app.features.results.analysis.demographics import KEY as DEMOGRAPHICS
 from app.features.results.analysis.figures.drawing import limb_note
 from app.features.results.analysis.material import Material, n_not_valid
 from app.features.results.analysis.questions.descriptives import descriptive
@@ -172,7 +173,7 @@ def _explored(
         ),
         ("reliability", "Consistency of the questionnaires", reliability(material)),
         ("relations", "Subjective and objective measures", subjective_objective(found)),
-        ("demographics", "Scores by demographics", demographics(material, found)),
+        (DEMOGRAPHICS, "Scores by demographics", demographics(material, found)),
     )
     n = max(int(one.values["participant_code"].nunique()) for one in found)
     for key, title, results in sections:

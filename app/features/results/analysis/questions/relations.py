@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pandas as pd
 
+from app.features.results.analysis.demographics import relations_of, variables_of
 from app.features.results.analysis.figures.contacts import mean_times, part_side_times
 from app.features.results.analysis.figures.fingers import PALM, in_some_phases, mark_fingers
 from app.features.results.analysis.material import Material
@@ -16,7 +17,6 @@ from app.science.statistics import (
     Spearman,
     StatisticsError,
     contact_shares,
-    explore,
     holm,
     spearman,
 )
@@ -35,8 +35,6 @@ _GROUPS = {
 }
 _ORDER = ("finger", "hand", "arm", "toes", "foot", "leg", "trunk and head")
 _SIDES = tuple(str(side) for side in Side)
-_NUMBERS = ("integer", "number", "likert")
-_CATEGORIES = ("choice", "boolean")
 
 
 def group_of(part: str) -> str:
@@ -270,13 +268,11 @@ def demographics(material: Material, measures: Sequence[Measure]) -> Iterator[Te
     """Yield the relation of each score, averaged over all cells, to answers outside the blocks."""
     tested = completed(material)
     answers = tested.counting(tested.answers)
-    about = answers[answers["limb"].isna() & answers["block"].isna()]
     for score in (one for one in measures if not one.continuous):
         means = score.values.groupby("participant_code")["value"].mean()
-        numbers, categories = _variables(about, list(means.index))
-        if not numbers and not categories:
+        variables = variables_of(answers, list(means.index), tested.instruments)
+        if not variables:
             return
-        found = explore(means.to_numpy(dtype=np.float64), numbers, categories)
         rows = [
             (
                 one.variable,
@@ -286,7 +282,7 @@ def demographics(material: Material, measures: Sequence[Measure]) -> Iterator[Te
                 p_cell(one.p) if not one.why_not else one.why_not,
                 p_cell(one.p_holm) if not one.why_not else "",
             )
-            for one in found
+            for one in relations_of(means, variables)
         ]
         yield TestReport(
             key=f"demographics_{score.key}",
@@ -299,20 +295,3 @@ def demographics(material: Material, measures: Sequence[Measure]) -> Iterator[Te
             source="Spearman 1904; Kruskal and Wallis 1952, J. Am. Stat. Assoc. 47:583.",
             exploratory=True,
         )
-
-
-def _variables(
-    about: pd.DataFrame, codes: Sequence[str]
-) -> tuple[dict[str, np.ndarray], dict[str, list[str | None]]]:
-    numbers: dict[str, np.ndarray] = {}
-    categories: dict[str, list[str | None]] = {}
-    for (form, item), own in about.groupby(["instrument", "item"], sort=False):
-        one = own.drop_duplicates("participant_code", keep="last").set_index("participant_code")
-        one, name = one.reindex(list(codes)), f"{form}: {item}"
-        kind = own["item_type"].iloc[0]
-        if kind in _NUMBERS:
-            numbers[name] = one["value_number"].to_numpy(dtype=np.float64)
-        elif kind in _CATEGORIES:
-            column = "value_text" if kind == "choice" else "value_number"
-            categories[name] = [None if pd.isna(v) else str(v) for v in one[column]]
-    return numbers, categories

@@ -30,7 +30,7 @@ import { SummaryRow } from "./SummaryRow";
 
 /** What the study is about comes first; the summary row above says how far it is. */
 const FIRST = "embodiment";
-const AFTERWARDS = ["tasks", "movement", "answers", "progress", "quality"] as const;
+const AFTERWARDS = ["tasks", "movement", "answers", "demographics", "progress", "quality"] as const;
 
 export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();

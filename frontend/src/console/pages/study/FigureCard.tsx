@@ -5,9 +5,11 @@ import { Button, Title } from "@mantine/core";
 import { analysis, type FigureEntry, type Filter } from "@shared/api/analysis";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
+import { Link } from "wouter";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import classes from "./DashboardTab.module.css";
+import { MEASURE } from "./StatisticsTab";
 import { useDownload } from "./useDownload";
 
 interface FigureCardProps {
@@ -37,17 +39,35 @@ export function FigureCard({ studyKey, entry, filter }: FigureCardProps): JSX.El
       )}
       <figcaption className={classes.caption}>{caption}</figcaption>
       {figure !== null && (
-        <SaveRow
-          label={t("figures.save", { title })}
-          name={`${studyKey}_${entry.key}_${filter.kind}`}
-          rowsUrl={analysis.rowsUrl(studyKey, entry.key, filter)}
-          onPicture={(format, name) =>
-            savePicture(figure, { title, caption, watermark }, entry.wide, format, name)
-          }
-        />
+        <div className={classes.foot}>
+          <SaveRow
+            label={t("figures.save", { title })}
+            name={`${studyKey}_${entry.key}_${filter.kind}`}
+            rowsUrl={analysis.rowsUrl(studyKey, entry.key, filter)}
+            onPicture={(format, name) =>
+              savePicture(figure, { title, caption, watermark }, entry.wide, format, name)
+            }
+          />
+          {entry.measure !== null && (
+            <Button
+              component={Link}
+              href={testsOf(entry.measure, studyKey, filter)}
+              size="compact-xs"
+              variant="subtle"
+              aria-label={t("figures.tests.of", { title })}
+            >
+              {t("figures.tests")}
+            </Button>
+          )}
+        </div>
       )}
     </figure>
   );
+}
+
+/** The address of the tests of a measure, with the numbers behind its figure. */
+function testsOf(measure: string, studyKey: string, { kind }: Filter): string {
+  return `/studies/${studyKey}/statistics?${new URLSearchParams({ kind, [MEASURE]: measure })}`;
 }
 
 interface SaveRowProps {

@@ -185,7 +185,7 @@ function MainTest({ view }: { readonly view: Preregistration }): JSX.Element {
       ) : (
         <>
           <p className={classes.text}>
-            <Primary primary={declaration.section.primary} />
+            <Primary declaration={declaration} />
           </p>
           <PrimaryResultBox result={result} alpha={declaration.alpha} />
         </>

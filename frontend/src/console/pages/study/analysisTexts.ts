@@ -19,6 +19,7 @@ export const analysisEn = {
   "figures.group.progress": "Progress and balance",
   "figures.group.embodiment": "Embodiment",
   "figures.group.answers": "Answers by item",
+  "figures.group.demographics": "Scores by demographics",
   "figures.group.tasks": "Tasks and contacts",
   "figures.group.movement": "Movement and latency",
   "figures.group.quality": "Quality and exclusions",
@@ -26,6 +27,8 @@ export const analysisEn = {
   "figures.png": "PNG",
   "figures.svg": "SVG",
   "figures.csv": "CSV",
+  "figures.tests": "Tests",
+  "figures.tests.of": "Tests of “{{title}}”",
   "figures.all": "Rows that do not count are shown too",
   "figures.all.body":
     "Aborted sessions and repeated or skipped steps are included in these figures. They are not part of any result.",
@@ -122,6 +125,7 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "figures.group.progress": "Fortschritt und Ausbalancierung",
   "figures.group.embodiment": "Körpererleben",
   "figures.group.answers": "Antworten je Frage",
+  "figures.group.demographics": "Werte und Angaben zur Person",
   "figures.group.tasks": "Aufgaben und Kontakte",
   "figures.group.movement": "Bewegung und Latenz",
   "figures.group.quality": "Qualität und Ausschlüsse",
@@ -129,6 +133,8 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "figures.png": "PNG",
   "figures.svg": "SVG",
   "figures.csv": "CSV",
+  "figures.tests": "Tests",
+  "figures.tests.of": "Tests zu „{{title}}“",
   "figures.all": "Auch Zeilen, die nicht zählen, werden gezeigt",
   "figures.all.body":
     "Diese Abbildungen enthalten auch abgebrochene Sitzungen und wiederholte oder übersprungene Schritte. Sie gehen in kein Ergebnis ein.",
