@@ -15,16 +15,15 @@ from typing import Any
 from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize
 from playwright.sync_api import TimeoutError as NotInTime
 
+from tests.benchmarks.every_page.accessibility import COLOUR_RULES, Examiner
 from tests.benchmarks.every_page.lab import FilledLab
 from tests.benchmarks.every_page.routes import Route
 from tests.support.browser import (
     MOVEMENTS_DONE,
-    RUN_AXE,
     PageWatch,
     in_both_schemes,
     take_screenshot,
 )
-from tests.support.chromium_binary import axe_script
 from tests.support.traffic import Traffic
 
 HEIGHTS_PX = {390: 844, 820: 1180, 1280: 800, 1920: 1080}
@@ -34,10 +33,6 @@ DRAWN_WITHIN_MS = 20_000
 SETTLES_WITHIN_S = 45.0
 SHIFT_LIMIT = 0.05
 
-COLOUR_RULES = ("color-contrast", "link-in-text-block")
-RUN_AXE_ON_COLOURS = f"""async () => await axe.run(document, {{
-  preload: false, runOnly: {{ type: "rule", values: {list(COLOUR_RULES)} }},
-}})"""
 # The blank page that a window opens with has no storage.
 FORGET = """
 if (location.protocol !== "about:") { localStorage.clear(); sessionStorage.clear(); }
@@ -129,6 +124,8 @@ class Window:
     width_px: int
     """Of the window, in pixels of the screen; the page has `width_px / zoom` CSS pixels."""
     zoom: int
+    examiner: Examiner
+    """Shared by the windows of a pass."""
     watch: PageWatch = field(default_factory=PageWatch)
 
     def looks(self, route: Route, pictures: Path | None = None) -> Iterator[Row]:
@@ -139,14 +136,16 @@ class Window:
             traffic = Traffic(page)
             page.goto(self.lab.server.url + route.address(self.lab.places))
             traffic.settle(SETTLES_WITHIN_S)
-            late = [] if route.waits or _is_drawn(page) else ["still loading"]
-            traffic.settle(SETTLES_WITHIN_S)
+            late = []
+            if not (route.waits or page.evaluate(DRAWN)):
+                late = [] if _is_drawn(page) else ["still loading"]
+                traffic.settle(SETTLES_WITHIN_S)
             page.evaluate(MOVEMENTS_DONE)
             shift, shifted = page.evaluate("[window.layoutShift, [...window.shifted]]")
             rules: dict[str, str] = {}
             for at, theme in enumerate(in_both_schemes(page)):
                 # Another theme changes colours only, so only their rules are checked again.
-                found = _violations(page, colours_only=at > 0)
+                found = self.examiner.violations(page, colours_only=at > 0)
                 of_theme = {**rules, **found} if at > 0 else found
                 rules = {rule: text for rule, text in found.items() if rule not in COLOUR_RULES}
                 out = page.evaluate(OVERFLOW)
@@ -180,7 +179,12 @@ class Window:
 
 @contextmanager
 def opened_window(
-    browser: Browser, lab: FilledLab, reader: str, width_px: int, zoom: int
+    browser: Browser,
+    lab: FilledLab,
+    reader: str,
+    width_px: int,
+    zoom: int,
+    examiner: Examiner,
 ) -> Iterator[Window]:
     """Open a window with the cookies of `reader`, one of `FilledLab.cookies`, or of nobody."""
     height_px = HEIGHTS_PX.get(width_px, 800)
@@ -196,7 +200,7 @@ def opened_window(
         context.add_init_script(OBSERVE_SHIFTS)
         for name, morsel in SimpleCookie(lab.cookies.get(reader, "")).items():
             context.add_cookies([{"name": name, "value": morsel.value, "url": lab.server.url}])
-        window = Window(context, lab, width_px, zoom)
+        window = Window(context, lab, width_px, zoom, examiner)
         window.watch.attach(context)
         yield window
     finally:
@@ -210,16 +214,3 @@ def _is_drawn(page: Page) -> bool:
     except NotInTime:
         return False
     return True
-
-
-def _violations(page: Page, *, colours_only: bool) -> dict[str, str]:
-    """Return the violated rules of any impact, each with its elements."""
-    page.evaluate(MOVEMENTS_DONE)
-    if not page.evaluate("'axe' in window"):
-        page.evaluate(axe_script().read_text(encoding="utf-8"))
-    result = page.evaluate(RUN_AXE_ON_COLOURS if colours_only else RUN_AXE)
-    return {
-        one["id"]: f"{one['id']} ({one['impact']}) "
-        + "; ".join(" ".join(map(str, node["target"])) for node in one["nodes"][:4])
-        for one in result["violations"]
-    }

@@ -13,17 +13,6 @@ interface KindFilterProps {
   readonly onChange: (kind: DataKind) => void;
 }
 
-/** How many sessions an analysis counts, and how many it excludes as not valid. */
-export function sessionCounts(
-  found: { readonly n_completed: number; readonly n_not_valid: number },
-  t: ReturnType<typeof useTexts>["t"],
-): string {
-  const counted = t("dashboard.sessions", { count: found.n_completed - found.n_not_valid });
-  return found.n_not_valid > 0
-    ? `${counted} · ${t("validity.excluded", { count: found.n_not_valid })}`
-    : counted;
-}
-
 export function KindFilter({ kind, onChange }: KindFilterProps): JSX.Element {
   const { t } = useTexts();
   return (

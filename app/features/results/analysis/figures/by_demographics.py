@@ -35,7 +35,7 @@ WHAT = (
     "Wallis. Exploratory: among so many panels one looks striking by chance."
 )
 COLUMNS = 2
-_PANEL_PX, _FOOT_PX = 190, 40
+_PANEL_PX, _FOOT_PX = 165, 40
 _FEWEST_FOR_A_MEDIAN = 3
 _WORD_CHARACTERS = 12
 _SIDEWAYS = 0.09
@@ -61,7 +61,7 @@ def _drawings(
     answers: pd.DataFrame,
     instruments: Mapping[tuple[str, int], Instrument],
 ) -> Iterator[Drawing]:
-    for score, (title, axis) in COMPONENTS.items():
+    for score, (title, _) in COMPONENTS.items():
         rows = scores[scores["score"] == score].dropna(subset=["limb", "value"])
         means = per_participant(rows, "value").groupby("participant_code")["value"].mean()
         variables = variables_of(answers, list(means.index), instruments)
@@ -77,13 +77,13 @@ def _drawings(
             f"{title} by demographics",
             f"{WHAT} {count_note(n)} {same}",
             n,
-            _figure(shown, means, found, f"{axis} (points)"),
+            _figure(shown, means, found),
             _rows(shown, means, found),
         ).tested_as(KEY)
 
 
 def _figure(
-    shown: Sequence[Variable], means: "pd.Series[float]", found: Mapping[str, Explored], axis: str
+    shown: Sequence[Variable], means: "pd.Series[float]", found: Mapping[str, Explored]
 ) -> go.Figure:
     rows = -(-len(shown) // COLUMNS)
     titles = [_panel_title(one, found[one.heading]) for one in shown]
@@ -101,7 +101,7 @@ def _figure(
             figure.add_trace(trace, **place)
         figure.update_xaxes(**_x_axis(variable), **place)
         if at % COLUMNS == 0:
-            figure.update_yaxes(title_text=axis, **place)
+            figure.update_yaxes(title_text="points", title_font_size=12, **place)
     figure.update_annotations(font_size=12)
     figure.update_layout(showlegend=False, height=rows * _PANEL_PX + _FOOT_PX, margin={"b": 44})
     return figure

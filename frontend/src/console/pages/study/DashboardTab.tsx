@@ -18,9 +18,10 @@ import type { JSX } from "react";
 import { useLocation, useSearch } from "wouter";
 import { useTexts } from "../../i18n";
 import { dashboardQuery } from "../../queries";
+import { Counted } from "../../ui/Counted";
 import { kindOf, useOwnSearch, useRememberedKind } from "../../ui/chosenKind";
 import { EmptyState } from "../../ui/EmptyState";
-import { KindFilter, sessionCounts } from "../../ui/KindFilter";
+import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import classes from "./DashboardTab.module.css";
 import { FigureCard } from "./FigureCard";
@@ -44,12 +45,10 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
           kind={filter.kind}
           onChange={(kind) => setFilter({ ...filterFrom(new URLSearchParams()), kind })}
         />
-        {query.data !== undefined && (
-          <span className={page.spacer}>
-            {sessionCounts(query.data, t)}
-            {(!query.data.current || waiting) && ` · ${t("dashboard.drawing")}`}
-          </span>
-        )}
+        <Counted
+          found={query.data}
+          doing={query.data?.current === false || waiting ? t("dashboard.drawing") : null}
+        />
       </div>
       <Loaded query={query}>
         {(dashboard) => (

@@ -9,9 +9,10 @@ import { type JSX, useEffect } from "react";
 import { useSearch } from "wouter";
 import { useTexts } from "../../i18n";
 import { statisticsQuery } from "../../queries";
+import { Counted } from "../../ui/Counted";
 import { useKind } from "../../ui/chosenKind";
 import { EmptyState } from "../../ui/EmptyState";
-import { KindFilter, sessionCounts } from "../../ui/KindFilter";
+import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import { AtAGlance } from "./AtAGlance";
 import { CopyButton, ResultCard } from "./ResultCard";
@@ -26,12 +27,10 @@ export function StatisticsTab({ study }: { readonly study: StudyDetail }): JSX.E
     <>
       <div className={page.toolbar}>
         <KindFilter kind={kind} onChange={setKind} />
-        {query.data !== undefined && (
-          <span className={page.spacer}>
-            {sessionCounts(query.data, t)}
-            {!query.data.current && ` · ${t("statistics.computing")}`}
-          </span>
-        )}
+        <Counted
+          found={query.data}
+          doing={query.data?.current === false ? t("statistics.computing") : null}
+        />
       </div>
       <p className={classes.lead}>{t("statistics.lead")}</p>
       <Loaded query={query}>{(found) => <Answers found={found} />}</Loaded>
