@@ -59,6 +59,16 @@ class RoadClient:
         return self._welcome
 
     @property
+    def problem(self) -> str:
+        """Why the scene broke off; empty if it did not."""
+        return "" if self.ended is None else self.ended.problem
+
+    @property
+    def has_traffic(self) -> bool:
+        """Whether the traffic has warmed up and goes on."""
+        return self.actors is not None and self.ended is None
+
+    @property
     def said(self) -> int:
         """How many steps were said so far."""
         return len(self._places)
@@ -74,12 +84,14 @@ class RoadClient:
     async def caught_up(self, timeout_s: float) -> bool:
         """Wait until the others are known at the last step that was said; False if it takes long.
 
+        Before any step it waits until the traffic has warmed up.
+
         A rehearsal faster than real time waits, so that the participant sees what is there.
         """
 
         def is_there() -> bool:
             known = -1 if self.actors is None else self.actors.step
-            return self.ended is not None or known >= self.said - 1
+            return self.ended is not None or known >= max(0, self.said - 1)
 
         try:
             async with asyncio.timeout(timeout_s), self._news:

@@ -19,7 +19,8 @@ from app.protocol import Tasks
 from app.rehearsal.avatars import AvatarSource, CannotChange, DelayedCopy, PhysicsBody, RemoteAvatar
 from app.rehearsal.body import FRAME_RATE_HZ, Person
 from app.rehearsal.goals import goal_of
-from app.rehearsal.road_run import CrossingRun, RoadShape
+from app.rehearsal.road_run import CrossingRun
+from app.rehearsal.road_shape import RoadShape
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
 from app.science.rotations import FloatArray
@@ -313,35 +314,48 @@ class Headset:
             self._run = BoxRun(order, rules, parts, self.t_s)
 
     def _enter_road(self, order: PhaseOrder) -> CrossingRun:
-        """Begin to cross, and open the road's socket, whose traffic warms up at once."""
+        """Begin to cross; the road's socket is opened once they stand at the start."""
         content = {} if self.client.welcome is None else self.client.welcome.road
-        sizes = content["road"]
-        lane_m, behind_m = sizes["lane_width_m"], content["starts_behind_kerb_m"]
-        shape = RoadShape(lane_m, behind_m, content["step_s"], content["kerb_height_m"])
+        shape = RoadShape.of(content)
+        self._person.participant.stand_on(shape)
         # As long as they need to the other kerb, and a second more.
-        accepts_s = 2.0 * lane_m / _SLOWEST_M_S + _LOOKS_FOR_S
-        run = CrossingRun(order, shape, accepts_s, self.t_s)
-        x_m, _, z_m = self._person.participant.pose(self.t_s, None).root_position_m
-        self._road = RoadClient(
-            self.client.url.replace("/vr/stream", "/vr/road"),
-            self.client.token,
-            order.phase_id,
-            order.active_s,
-            run.stands_at(float(x_m), float(z_m)),
-        )
-        return run
+        accepts_s = 2.0 * shape.lane_width_m / _SLOWEST_M_S + _LOOKS_FOR_S
+        return CrossingRun(order, shape, accepts_s, self.t_s)
+
+    def _walk(self, run: CrossingRun, x_m: float, z_m: float) -> None:
+        """Say where the participant is on the road, whose traffic comes when they are at the start.
+
+        Raises:
+            RoadLostError: the traffic broke off.
+        """
+        places = run.walk(self.t_s, x_m, z_m)
+        if self._road is not None:
+            self._road.say(places, running=run.clock_runs)
+        elif run.awaits != "start":
+            self._road = RoadClient(
+                self.client.url.replace("/vr/stream", "/vr/road"),
+                self.client.token,
+                run.order.phase_id,
+                run.active_s(self.t_s),
+                run.enter_scene(self.t_s, x_m, z_m),
+            )
+        if self._road is not None and self._road.problem:
+            raise RoadLostError(f"the road broke off: {self._road.problem}")
+        run.follow_traffic(has_traffic=self._road is not None and self._road.has_traffic)
 
     async def _leave_road(self) -> None:
         if self._road is not None:
             road, self._road = self._road, None
             await road.end()
-            if road.ended is None or road.ended.problem:
-                raise RoadLostError("the road did not end" if road.ended is None
-                                    else f"the road broke off: {road.ended.problem}")  # fmt: skip
+            if road.ended is None:
+                raise RoadLostError("the road did not end")
+            if road.problem:
+                raise RoadLostError(f"the road broke off: {road.problem}")
 
     async def _leave_phase(self) -> None:
         await self._leave_road()
         await self._flush()
+        self._person.participant.stand_on(None)
         self._run = None
         self._follow_later(0.0)
         self._show_boxes(None)
@@ -372,9 +386,9 @@ class Headset:
         if isinstance(run, BoxRun):
             solid = self._physics is not None
             goal = goal_of(run.state, self._person.leading_foot, solid=solid)
-        elif isinstance(run, CrossingRun) and self._road is not None:
-            actors = () if self._road.actors is None else self._road.actors.actors
-            goal = run.goal(actors)
+        elif isinstance(run, CrossingRun):
+            known = None if self._road is None else self._road.actors
+            goal = run.goal(() if known is None else known.actors)
         avatar = self._avatar
         pose = self._person.participant.pose(t_s, goal)
         if avatar is None:
@@ -389,9 +403,9 @@ class Headset:
             self._record(t_s, pose, shown, (fingers, avatar.fingers))
         if run is not None:
             connected = self.client.connected or self._goes_on_alone
-            if isinstance(run, CrossingRun) and self._road is not None:
+            if isinstance(run, CrossingRun):
                 x_m, _, z_m = (float(one) for one in shown.root_position_m)
-                self._road.say(run.walk(t_s, x_m, z_m), running=run.clock_runs)
+                self._walk(run, x_m, z_m)
             await self._report(run.frame(t_s, avatar.touches, connected=connected))
             if run.ended:
                 await self._leave_phase()

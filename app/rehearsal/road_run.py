@@ -6,10 +6,10 @@ ours, as for the walkers of scenes.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import atan2, hypot, pi
 
-from app.rehearsal.timed_run import FreeRun
+from app.rehearsal.road_shape import RoadShape
+from app.rehearsal.timed_run import Awaited, FreeRun
 from app.science.cosimulation import State, arrival_s
 from app.science.simulation import Goal, GoalKind
 from app.wire import CompletionReport, FloorPlace, PhaseOrder, ReportBody, RoadActor
@@ -18,42 +18,11 @@ BODY_M = 0.5
 WAITS_M = 0.4
 """How far behind the kerb the participant stops to look."""
 LOOKS_S = 1.0
-ACROSS_M = 0.3
-"""Somebody who is this far behind the other kerb is across."""
+AT_START_M = 0.5
+"""Whoever is this near to the middle of the start square, on its pavement, stands on it."""
 NEAR_M = 0.2
 LIFT_M = 0.1
 _STANDING_M_S = 0.05
-
-
-@dataclass(frozen=True)
-class RoadShape:
-    """What a headset knows of the road: from the start square to the kerb, and across.
-
-    Attributes:
-        lane_width_m: of each of two lanes.
-        starts_behind_kerb_m: from the middle of the start square to the near kerb.
-        step_s: of the scene.
-        kerb_height_m: how far the carriageway lies below the pavement.
-    """
-
-    lane_width_m: float
-    starts_behind_kerb_m: float
-    step_s: float
-    kerb_height_m: float
-
-    def y_m(self, z_m: float) -> float:
-        """Return where somebody in the room is across the road."""
-        return -z_m - self.lane_width_m - self.starts_behind_kerb_m
-
-    def z_m(self, y_m: float) -> float:
-        """Return where a place across the road is in the room."""
-        return -y_m - self.lane_width_m - self.starts_behind_kerb_m
-
-    def side(self, y_m: float) -> int:
-        """Return -1 on the near side, 1 on the other, 0 in between."""
-        if abs(y_m) < self.lane_width_m + ACROSS_M:
-            return 0
-        return 1 if y_m > 0.0 else -1
 
 
 class CrossingRun(FreeRun):
@@ -66,12 +35,15 @@ class CrossingRun(FreeRun):
         self._done = order.completions
         self._reported = order.completions
         self._side: int | None = None
+        self._is_at_start = False
+        self._has_traffic = True
         self._since_s = order.active_s
         self._last: tuple[float, float, float] | None = None
         self._heading_rad = pi / 2.0
         self._next_step = 0
         self._looks_from_s: float | None = None
         self._goes_to: int | None = None
+        self._stays: Goal | None = None
         self._news: list[ReportBody] = []
 
     @property
@@ -80,17 +52,32 @@ class CrossingRun(FreeRun):
         required = self.order.until_completions
         return required is not None and self.clock_runs and self._reported >= required
 
-    def stands_at(self, x_m: float, z_m: float) -> FloorPlace:
-        """Return a place of somebody who stands, facing across."""
+    @property
+    def awaits(self) -> Awaited | None:
+        """What the clock waits for: the start square before it starts, and always the cars."""
+        if self.clock.last_s is None and not self._is_at_start:
+            return "start"
+        return None if self._has_traffic else "traffic"
+
+    def follow_traffic(self, *, has_traffic: bool) -> None:
+        """Say whether the scene goes on: the clock waits for it."""
+        self._has_traffic = has_traffic
+
+    def enter_scene(self, t_s: float, x_m: float, z_m: float) -> FloorPlace:
+        """Count the steps of a scene that begins now; return where the participant stands."""
+        self.begins_at_s = self.active_s(t_s)
+        self._next_step, self._last = 0, None
         return (x_m, self.road.y_m(z_m), self._heading_rad, 0.0)
 
     def walk(self, t_s: float, x_m: float, z_m: float) -> list[FloorPlace]:
         """Take where the participant is in a frame; return the places of the steps until then."""
         y_m = self.road.y_m(z_m)
+        is_near = hypot(x_m, z_m) <= AT_START_M
+        self._is_at_start = is_near and y_m <= -self.road.lane_width_m
         if self._last is None or not self.clock_runs:
-            # While the clock stands people may walk; the next step begins where they are then.
+            # While the clock stands people may walk, also across; the rest begins where they are.
             self._last = (self.active_s(t_s), x_m, y_m)
-            self._side = self._side or self.road.side(y_m)
+            self._side = self.road.side(y_m) or self._side
             return self._first(x_m, y_m) if self.clock_runs else []
         found = self._places(self.active_s(t_s), x_m, y_m)
         side = self.road.side(y_m)
@@ -100,10 +87,14 @@ class CrossingRun(FreeRun):
         return found
 
     def goal(self, actors: Sequence[RoadActor]) -> Goal | None:
-        """Return where the participant walks; None before the clock has started."""
-        if not self.clock_runs or self._last is None:
-            return None
+        """Return where the participant walks: to the start square before the clock starts."""
+        if self._last is None or self.clock.last_s is None:
+            return self._to(self.road.y_m(0.0))
         active_s, x_m, y_m = self._last
+        if not self.clock_runs:
+            self._stays = self._stays or self._to(y_m)
+            return self._stays
+        self._stays = None
         side = self._side or -1
         kerb_m = self.road.lane_width_m
         if self._goes_to is not None and self._goes_to == side:

@@ -7,6 +7,7 @@ the connection is lost, so both sides agree on what counts.
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,8 @@ from app.wire import PhaseOrder, PhaseReport, ReportBody
 Bools = NDArray[np.bool_]
 Touches = Callable[[], tuple[Bools, Bools]]
 """Returns, by surface and joint (S, P), what is touched and what is near enough to keep a touch."""
+Awaited = Literal["start", "traffic"]
+"""What the clock waits for: that the participant stands at the start, or that cars drive."""
 
 
 class TimedRun(ABC):
@@ -58,6 +61,11 @@ class TimedRun(ABC):
         return self.clock.running_since_s is not None
 
     @property
+    def awaits(self) -> Awaited | None:
+        """What the clock waits for before it starts or goes on; None: nothing."""
+        return None
+
+    @property
     def ends_early(self) -> bool:
         """Whether the phase ends before its time is up: a practice with its tasks completed."""
         return False
@@ -87,7 +95,7 @@ class TimedRun(ABC):
             self._spent_s = max(self._spent_s, order.active_s)
         if self._paused and order.status == "running":
             return [self.report("paused", t_s, "restarted")]
-        if order.resuming and self._paused:
+        if order.resuming and self._paused and self.awaits is None:
             self._paused = False
             self.command(CommandKind.RESUME, t_s)
             reports += [*self.news(t_s), self.report("resumed", t_s)]
@@ -106,6 +114,11 @@ class TimedRun(ABC):
         if not connected:
             self._begins_s = max(self._begins_s, t_s)
             return self._pause(t_s, "disconnected") if self.clock_runs else []
+        if self.clock.last_s is None and self.awaits is not None:
+            # Whoever has just come to the start gets the whole preparation.
+            left_s = self.order.preparation_s if self.awaits == "start" else 0.0
+            self._begins_s = max(self._begins_s, t_s + left_s)
+            return []
         reports: list[ReportBody] = []
         if self.clock.last_s is None and t_s >= self._begins_s:
             self.command(CommandKind.START, t_s)

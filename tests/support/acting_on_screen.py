@@ -38,13 +38,13 @@ def act_on_this_screen(console: Page) -> Acted:
     with console.expect_popup(timeout=PATIENCE_MS) as opened:
         click(console.get_by_role("menuitem", name="Act on this screen"))
     desk = opened.value
-    _until(desk, "globalThis.reembody?.place === 'stepping_in'")
+    until(desk, "globalThis.reembody?.place === 'stepping_in'")
     desk.keyboard.down("Space")
-    _until(desk, "reembody.place === 'acting' && reembody.computed !== null")
+    until(desk, "reembody.place === 'acting' && reembody.computed !== null")
     desk.keyboard.up("Space")
     stood_m = float(desk.evaluate(HIPS_Z_M))
     desk.keyboard.down("KeyW")
-    _until(desk, f"reembody.recorded > 0 && {HIPS_Z_M} < {stood_m} - 0.05")
+    until(desk, f"reembody.recorded > 0 && {HIPS_Z_M} < {stood_m} - 0.05")
     desk.keyboard.up("KeyW")
     return Acted(desk, clicks, time.monotonic() - began_s)
 
@@ -53,5 +53,6 @@ HIPS_Z_M = "reembody.computed.remote[2]"
 """The root position's z of the body that is acted with, m; forwards is -z."""
 
 
-def _until(page: Page, condition: str) -> None:
+def until(page: Page, condition: str) -> None:
+    """Wait until a JavaScript expression is true, without waiting for frames."""
     page.wait_for_function(f"() => {condition}", polling=WITHIN_MS, timeout=PATIENCE_MS)

@@ -14,6 +14,7 @@ from app.science.simulation.fingers import (
     SimulatedFingers,
     gesture_angles,
 )
+from app.science.simulation.footing import Footing
 from app.science.simulation.goal import Goal, GoalKind, SimulationError
 from app.science.simulation.idle import idle_movement, relaxed_pose
 from app.science.simulation.participant import SimulatedParticipant
@@ -24,6 +25,7 @@ __all__ = [
     "Aspect",
     "Build",
     "FingerCapsules",
+    "Footing",
     "Goal",
     "GoalKind",
     "LoopedFingers",

@@ -26,6 +26,7 @@ import numpy as np
 from app.science.rotations import FloatArray, Vector, rotate
 from app.science.simulation.aiming import Aim
 from app.science.simulation.base import BaseMovement
+from app.science.simulation.footing import Footing
 from app.science.simulation.goal import Goal, GoalKind, SimulationError
 from app.science.simulation.hands import Hand
 from app.science.simulation.paths import limit_turn_rate, minimum_jerk
@@ -72,6 +73,7 @@ class SimulatedParticipant:
         self._posture, self._stance = Posture(skeleton), Stance(skeleton, home_m, self._feet_seen)
         self._placement = Placement(self._posture, home_m)
         self._hands = tuple(Hand(LateVision(self.traits.vision_s)) for _ in SIDE_NAMES)
+        self._footing: Footing | None = None
         self._goal: Goal | None = None
         self._time_s: float | None = None
         self._pose: Pose | None = None
@@ -93,6 +95,10 @@ class SimulatedParticipant:
             if hand.goal == self._goal:
                 return hand.aimed_m
         return self._stance.aimed_m if self._stance.goal == self._goal else None
+
+    def stand_on(self, footing: Footing | None) -> None:
+        """Set the feet on this ground from now on when they stand or step; None: a flat floor."""
+        self._footing = footing
 
     def see(self, time_s: float, effector: str, place_m: Vector) -> None:
         """Show the person where the limb of a goal is: call once per frame, after `pose`.
@@ -214,8 +220,16 @@ class SimulatedParticipant:
         left, right = ankles
         highest = posture.highest_hips((x, z), local, (left, right))
         root = (x, placement.height(highest, step_s), z)
+        if self._footing is not None:
+            left, right = (self._set_down(ankle, (x, z)) for ankle in ankles)
         posture.legs(local, root, (left, right))
         return root
+
+    def _set_down(self, ankle: Vector, hips_m: tuple[float, float]) -> Vector:
+        """Return where an ankle is on the ground that is seen there."""
+        x, y, z = ankle
+        lift_m = 0.0 if self._footing is None else self._footing.lift_m((x, z), hips_m)
+        return (x, y + lift_m, z)
 
     def _tip(self, side: int) -> Vector:
         """Return where a hanging hand's finger tip was in the last frame."""

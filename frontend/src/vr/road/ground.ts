@@ -4,16 +4,26 @@
  * The lab's floor is flat, so nobody is lifted: the street sinks and rises under the participant, by
  * the height of the ground below the hips, and each foot is set on the ground where it is. That is
  * the rule of the moving ground of `app/science/retargeting/ground.py` (Degen et al. 2022), seen from
- * the body instead of from the street.
+ * the body instead of from the street. `app/rehearsal/road_shape.py` has the same, and the vectors in
+ * `tests/vectors/road` hold both to it.
  */
+import { JOINTS, UNIT_SKELETON } from "@shared/avatar/anatomy.generated";
 import type { Goals } from "@shared/avatar/goals";
 import type { Place } from "@shared/avatar/hips";
+import { rotate, type Vector } from "@shared/rotations";
 import type { Road } from "../telemetry";
 
 /** Over this far before and behind a kerb's edge the street sinks with the hips, metres. */
 const HIPS_REACH_M = 0.35;
 /** And so far a foot is led over it, so that neither heel nor toes stick in it. */
 const FOOT_REACH_M = 0.12;
+/** From the knee to the ankle, of somebody 1 m tall. */
+const UNIT_SHANK_M = Math.hypot(
+  ...UNIT_SKELETON.offsets.slice(
+    3 * JOINTS.indexOf("LeftFoot"),
+    3 * JOINTS.indexOf("LeftFoot") + 3,
+  ),
+);
 
 export class RoadGround {
   readonly #kerbM: number;
@@ -42,14 +52,22 @@ export class RoadGround {
     return this.heightM(hipsZM, HIPS_REACH_M);
   }
 
-  /** The goals with each foot on the ground where it is; hips, head and hands stay. */
-  carried(goals: Goals, hipsZM: number): Goals {
-    const sunkM = this.sunkM(hipsZM);
-    const onGround = (place: Place | null): Place | null => {
-      if (place === null) return null;
-      const [x, y, z] = place.positionM;
-      const liftM = this.heightM(z, FOOT_REACH_M) - sunkM;
-      return { ...place, positionM: [x, y + liftM, z] };
+  /** How far a foot with its ankle there is set above the lab's floor. */
+  liftM(ankleZM: number, hipsZM: number): number {
+    return this.heightM(ankleZM, FOOT_REACH_M) - this.sunkM(hipsZM);
+  }
+
+  /**
+   * The goals of somebody of this stature with each foot on the ground where it is; hips, head and
+   * hands stay.
+   */
+  carried(goals: Goals, hipsZM: number, statureM: number): Goals {
+    const shank: Vector = [0, -UNIT_SHANK_M * statureM, 0];
+    const onGround = (knee: Place | null): Place | null => {
+      if (knee === null) return null;
+      const [x, y, z] = knee.positionM;
+      const ankleZM = z + rotate(knee.rotation, shank)[2];
+      return { ...knee, positionM: [x, y + this.liftM(ankleZM, hipsZM), z] };
     };
     return {
       ...goals,

@@ -56,8 +56,9 @@ export class RoadLink {
     return this.#problem;
   }
 
-  get isWelcome(): boolean {
-    return this.#said !== null;
+  /** Whether the traffic has warmed up and goes on. */
+  get hasTraffic(): boolean {
+    return this.#others !== NOBODY && this.#problem === null;
   }
 
   /** Say where the participant was at the next steps, and whether the phase's clock runs. */

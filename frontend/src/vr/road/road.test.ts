@@ -1,4 +1,6 @@
 /** Tests of the road's ground, its socket, and a phase on it. */
+import { readFileSync } from "node:fs";
+import { resolve } from "node:path";
 import { NO_GOALS } from "@shared/avatar/goals";
 import { describe, expect, it } from "vitest";
 import { RoadRun } from "../tasks";
@@ -24,19 +26,38 @@ describe("the ground", () => {
     expect(ground.sunkM(-0.8)).toBeCloseTo(0.06, 12);
   });
 
+  it("is that of the rehearsal's participant", () => {
+    const file = resolve(import.meta.dirname, "../../../../tests/vectors/road/ground.json");
+    const { road, rows } = JSON.parse(readFileSync(file, "utf8"));
+    const same = new RoadGround(road);
+    expect(rows.length).toBeGreaterThan(400);
+    for (const [hipsZM, ankleZM, sunkM, liftM] of rows) {
+      expect(same.sunkM(hipsZM)).toBeCloseTo(sunkM, 12);
+      expect(same.liftM(ankleZM, hipsZM)).toBeCloseTo(liftM, 12);
+    }
+  });
+
+  it("sets a foot by where its ankle is, not its knee", () => {
+    // The knee is ahead, over the carriageway; the shin leads back to a foot on the pavement.
+    const rotation = [Math.cos(-0.4), Math.sin(-0.4), 0, 0] as const;
+    const knee = { positionM: [0, 0.45, -0.95] as const, rotation };
+    const { LeftLowerLeg } = ground.carried({ ...NO_GOALS, LeftLowerLeg: knee }, -2, 1.7);
+    expect(LeftLowerLeg?.positionM[1]).toBeCloseTo(0.45 + 0.12, 3);
+  });
+
   it("sets each foot on the ground where it is, and moves neither head nor hands", () => {
     const at = (z: number) => ({ positionM: [0, 0.45, z] as const, rotation: FACING });
     const goals = { ...NO_GOALS, Head: at(-0.6), LeftLowerLeg: at(-1.2), RightLowerLeg: at(-0.4) };
     // The hips are still over the pavement: the foot ahead goes down by the whole kerb.
-    const before = ground.carried(goals, -0.3);
+    const before = ground.carried(goals, -0.3, 1.7);
     expect(before.LeftLowerLeg?.positionM[1]).toBeCloseTo(0.45 - 0.12, 12);
     expect(before.RightLowerLeg?.positionM[1]).toBeCloseTo(0.45, 12);
     expect(before.Head).toBe(goals.Head);
     // The hips are over the carriageway: the foot behind still stands a kerb higher.
-    const after = ground.carried(goals, -2);
+    const after = ground.carried(goals, -2, 1.7);
     expect(after.LeftLowerLeg?.positionM[1]).toBeCloseTo(0.45, 12);
     expect(after.RightLowerLeg?.positionM[1]).toBeCloseTo(0.45 + 0.12, 12);
-    expect(ground.carried(NO_GOALS, 0)).toEqual(NO_GOALS);
+    expect(ground.carried(NO_GOALS, 0, 1.7)).toEqual(NO_GOALS);
   });
 });
 
@@ -73,6 +94,37 @@ describe("a phase on the road", () => {
     expect(run.completed).toBe(1);
     expect([-3, 0].flatMap(walk)).toEqual(["completion", "phase"]);
     expect(run.isFrozen).toBe(true);
+  });
+
+  it("begins on the start square, once cars drive, with the whole preparation", () => {
+    const run = new RoadRun({ ...order, has_road: true }, ROAD, 0);
+    const said = (timeS: number) => run.frame(timeS, null, true).map((one) => one.kind);
+    run.walk(0, 0, -6.6);
+    expect([run.awaits, said(3)]).toEqual(["start", []]);
+    run.walk(3, 0.1, 0);
+    run.followTraffic(false);
+    expect([run.awaits, run.preparationLeftS(3)]).toEqual(["traffic", 1]);
+    expect(said(5)).toEqual([]);
+    run.followTraffic(true);
+    expect([run.awaits, said(5.1)]).toEqual([null, ["phase"]]);
+    run.walk(5.2, 0.1, 0);
+    run.walk(5.3, 0.1, -0.1);
+    expect(run.completed).toBe(0);
+  });
+
+  it("goes on after a pause only with cars; another scene's steps count from there", () => {
+    const run = started();
+    run.walk(1.5, 0, 0);
+    run.stop(2, "road");
+    run.followTraffic(false);
+    const resuming = { ...run.order, status: "paused", resuming: true } as const;
+    expect(run.follow(resuming, 3)).toEqual([]);
+    expect(run.enterScene(3, 0, -1)).toEqual([0, -2.3, Math.PI / 2, 0]);
+    run.followTraffic(true);
+    expect(run.follow(resuming, 4)).toHaveLength(1);
+    // Step 0 of the new scene is where and when it began.
+    expect(run.walk(4, 0, -1)).toEqual([[0, -2.3, Math.PI / 2, 0]]);
+    expect(run.walk(4.041, 0, -1)).toHaveLength(2);
   });
 
   it("says no place while its clock stands", () => {
@@ -121,8 +173,11 @@ describe("the socket", () => {
       { type: "clock", running: true },
       { type: "places", first_step: 0, places: [place, place] },
     ]);
+    expect(link.hasTraffic).toBe(false);
+    first.hears({ type: "actors", step: 0, active_s: 0, actors: [] });
+    expect(link.hasTraffic).toBe(true);
     first.hears({ type: "ended", problem: "SUMO stopped" });
-    expect(link.problem).toBe("SUMO stopped");
+    expect([link.problem, link.hasTraffic]).toEqual(["SUMO stopped", false]);
     link.close();
     expect(first.sent.at(-1)).toEqual({ type: "end" });
   });

@@ -1,4 +1,6 @@
 import { describe, expect, it } from "vitest";
+import type { RoadLink } from "../road";
+import type { Road } from "../telemetry";
 import { Headset } from "./headset";
 import type { View } from "./ports";
 import { FakeBodies, FakeSource, FakeTelemetry, Kept, ORDER, STATE } from "./testing";
@@ -7,8 +9,33 @@ const RATE_HZ = 90;
 /** WebXR's frames are told apart from a screen's by being there. */
 const XR = {} as XRFrame;
 
+const ROAD: Road = {
+  road: { half_length_m: 100, lane_width_m: 2.5, pavement_width_m: 2, crossing_width_m: 4 },
+  kerb_height_m: 0.12,
+  starts_behind_kerb_m: 0.8,
+  step_s: 0.02,
+};
+
+/** A scene of the road that a test lets drive or break off. */
+class FakeScene {
+  hasTraffic = false;
+  problem: string | null = null;
+  isClosed = false;
+  readonly others = { activeS: 0, actors: [] };
+
+  constructor(readonly activeS: number) {}
+
+  say(): void {}
+
+  close(): void {
+    this.isClosed = true;
+  }
+}
+
 async function worn({ lateBy = 0, state = STATE, source = new FakeSource() } = {}) {
   const telemetry = new FakeTelemetry();
+  Object.assign(telemetry.welcome, { road: ROAD });
+  const scenes: FakeScene[] = [];
   telemetry.state = state;
   const bodies = new FakeBodies(lateBy);
   const views: View[] = [];
@@ -18,6 +45,11 @@ async function worn({ lateBy = 0, state = STATE, source = new FakeSource() } = {
     keep: new Kept(),
     onSquare: () => undefined,
     prepareBodies: async () => bodies,
+    openRoad: (_, activeS) => {
+      const scene = new FakeScene(activeS);
+      scenes.push(scene);
+      return scene as unknown as RoadLink;
+    },
     scenery: { show: (view) => views.push(view) },
     withFingers: false,
     onBodyWorn: () => undefined,
@@ -37,7 +69,8 @@ async function worn({ lateBy = 0, state = STATE, source = new FakeSource() } = {
   const sleep = (seconds: number) => {
     frame += Math.round(seconds * RATE_HZ);
   };
-  return { telemetry, bodies, source, views, headset, draw, sleep, nowS: () => frame / RATE_HZ };
+  const nowS = () => frame / RATE_HZ;
+  return { telemetry, bodies, source, views, headset, draw, sleep, scenes, nowS };
 }
 
 const phases = (telemetry: FakeTelemetry) =>
@@ -174,6 +207,33 @@ describe("the headset", () => {
     telemetry.settled = true;
     draw(0.5);
     expect(phases(telemetry).at(-1)).toBe(paused);
+  });
+
+  it("stops its clock when the road's scene breaks off, and begins another when it goes on", async () => {
+    const { telemetry, draw, scenes } = await worn();
+    const crossing = { ...ORDER, has_road: true, preparation_s: 0.1, duration_s: 60 };
+    telemetry.state = { ...STATE, phase: crossing };
+    draw(0.3);
+    expect(phases(telemetry)).toEqual([]);
+    const [first] = scenes as [FakeScene];
+    first.hasTraffic = true;
+    draw(1);
+    expect(phases(telemetry).map(({ what }) => what)).toEqual(["started"]);
+    Object.assign(first, { hasTraffic: false, problem: "'cars' has closed its connection." });
+    draw(0.1);
+    const paused = phases(telemetry).at(-1);
+    expect(paused).toMatchObject({ what: "paused", cause: "road" });
+    const active_s = paused?.active_s ?? Number.NaN;
+    draw(6);
+    expect(scenes).toHaveLength(1);
+    const resuming = { ...crossing, status: "paused", active_s, resuming: true } as const;
+    telemetry.state = { ...STATE, phase: resuming };
+    draw(1);
+    expect([first.isClosed, scenes.length, scenes[1]?.activeS]).toEqual([true, 2, active_s]);
+    expect(phases(telemetry).at(-1)).toBe(paused);
+    Object.assign(scenes[1] ?? {}, { hasTraffic: true });
+    draw(2 / RATE_HZ);
+    expect(phases(telemetry).at(-1)).toMatchObject({ what: "resumed", active_s });
   });
 
   it("reports how the goals are known at its first frame and whenever that changes", async () => {

@@ -29,6 +29,8 @@ import { SleepWatch } from "./sleep";
 
 /** Bodies are made anew before they are stepped into if a length has changed by this, m. */
 const OTHER_BODY_M = 0.005;
+/** A scene that broke off is begun anew, if the operator resumes, this long after the last one, s. */
+const NEXT_SCENE_S = 5;
 
 export interface HeadsetParts {
   readonly telemetry: TelemetryClient;
@@ -78,6 +80,7 @@ export class Headset {
   readonly #freezable = new ShownPose();
   readonly #ground: RoadGround | null;
   #road: RoadLink | null = null;
+  #sceneS = 0;
 
   constructor(parts: HeadsetParts) {
     this.#parts = parts;
@@ -160,7 +163,8 @@ export class Headset {
     if (bodies !== null) {
       const steady = this.#steady.steady(tracked, calibrating.calibrator.goals(tracked));
       const isOnRoad = this.#ground !== null && this.#phases.run instanceof RoadRun;
-      const goals = isOnRoad ? this.#ground.carried(steady, hipsZM(bodies)) : steady;
+      const statureM = this.#madeFor?.statureM ?? 0;
+      const goals = isOnRoad ? this.#ground.carried(steady, hipsZM(bodies), statureM) : steady;
       bodies.step({ timeS, goals, fingers: this.#fingersOf(tracked) });
       this.#perform(bodies, state, tracked);
     }
@@ -336,26 +340,41 @@ export class Headset {
     ]);
   }
 
-  /** Say where the participant is on the road; a scene that broke off stops the clock. */
+  /**
+   * Say where the participant is on the road. Its scene begins when they stand at the start; one that
+   * broke off stops the clock, and another one begins when the operator resumes.
+   */
   #walk(run: RoadRun, { remote }: BodiesFrame): void {
     const timeS = this.#timeS;
     const [x = 0, , z = 0] = remote;
-    this.#road ??=
-      this.#parts.openRoad?.(run.order.phase_id, run.activeS(timeS), run.standsAt(x, z)) ?? null;
-    this.#road?.say(run.walk(timeS, x, z), run.clockRuns);
-    if (this.#road?.problem != null && run.clockRuns) this.stop("road");
+    const places = run.walk(timeS, x, z);
+    this.#road?.say(places, run.clockRuns);
+    const isBroken = this.#road?.problem != null;
+    if (isBroken && run.clockRuns) this.stop("road");
+    if (isBroken && run.order.resuming && timeS - this.#sceneS > NEXT_SCENE_S) this.#leaveRoad();
+    const { openRoad } = this.#parts;
+    if (this.#road === null && openRoad !== undefined && run.awaits !== "start") {
+      this.#sceneS = timeS;
+      const place = run.enterScene(timeS, x, z);
+      this.#road = openRoad(run.order.phase_id, run.activeS(timeS), place);
+    }
+    run.followTraffic(openRoad === undefined || this.#road?.hasTraffic === true);
+  }
+
+  #leaveRoad(): void {
+    this.#road?.close();
+    this.#road = null;
   }
 
   #streetAround(run: TimedRun | null, timeS: number): StreetView | null {
     if (this.#ground === null || this.#bodies === null || !(run instanceof RoadRun)) return null;
     const sunkM = this.#ground.sunkM(hipsZM(this.#bodies));
     const others = this.#road?.others ?? NOBODY;
-    return { sunkM, others, activeS: run.activeS(timeS) };
+    return { sunkM, others, activeS: run.activeS(timeS), showsStart: run.awaits === "start" };
   }
 
   #leavePhase(): void {
-    this.#road?.close();
-    this.#road = null;
+    this.#leaveRoad();
     this.#bodies?.setLatency(0);
     this.#bodies?.showSurfaces([]);
     this.#recorder.flush(this.#timeS);

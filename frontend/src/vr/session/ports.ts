@@ -20,6 +20,8 @@ export interface StreetView {
   readonly sunkM: number;
   readonly others: Others;
   readonly activeS: number;
+  /** The start square on the pavement, while the participant has to go there. */
+  readonly showsStart: boolean;
 }
 
 /** What is shown in one frame. */

@@ -237,10 +237,11 @@ class Journey {
   }
 }
 
-/** On the road the person walks across without looking, there and back. */
+/** On the road the person goes to the start, and walks across without looking, there and back. */
 function acrossOn(run: RoadRun): ScriptedGoal | null {
-  if (!run.clockRuns) return null;
-  const zM = run.completed % 2 === 0 ? -run.wayAcrossM : 0;
+  const goesToStart = run.awaits === "start";
+  if (!run.clockRuns && !goesToStart) return null;
+  const zM = run.completed % 2 === 0 && !goesToStart ? -run.wayAcrossM : 0;
   return { kind: "walk_to", limb: null, targetM: [0, 0, zM], nearM: 0.2, approachM: [0, 0.1, 0] };
 }
 

@@ -42,6 +42,8 @@ const KERB = new Color("#c9c6bf");
 const PAINT = new Color("#e8e7e2");
 const GRASS = new Color("#7d8b66");
 const CAR_COLOURS = ["#7f2f2f", "#2f4a7f", "#c9cbce", "#3c3f44", "#6b7f5a", "#b58a3c"] as const;
+/** Side of the start square, m. */
+const SQUARE_M = 0.6;
 const CLOTHES = ["#3f5f7a", "#7a4a3f", "#4f6b4a", "#6a5878"] as const;
 
 /** What the road shows in one frame. */
@@ -51,6 +53,7 @@ export interface StreetShown {
   readonly others: Others;
   /** The phase's active time now, s: others are led on to it. */
   readonly activeS: number;
+  readonly showsStart: boolean;
 }
 
 export class Street {
@@ -59,13 +62,18 @@ export class Street {
   readonly #kerbM: number;
   readonly #laneM: number;
   readonly #ground: Mesh<BufferGeometry, MeshBasicMaterial>;
+  readonly #start: Mesh<BufferGeometry, MeshBasicMaterial>;
   /** What has the car's own colour, and what is the same on all. */
   readonly #cars: readonly InstancedMesh[];
   readonly #walkers: readonly InstancedMesh[];
   readonly #strides = new Map<string, { x: number; z: number; walkedM: number }>();
   readonly #at = new Object3D();
 
-  constructor({ road, kerb_height_m: kerbM, starts_behind_kerb_m: behindM }: Road) {
+  /** `startColour`: of the start square. */
+  constructor(
+    { road, kerb_height_m: kerbM, starts_behind_kerb_m: behindM }: Road,
+    startColour: string,
+  ) {
     this.#kerbM = kerbM;
     this.#laneM = road.lane_width_m;
     this.#middleZM = -behindM - road.lane_width_m;
@@ -73,9 +81,15 @@ export class Street {
       groundOf(road, kerbM, this.#middleZM),
       new MeshBasicMaterial({ vertexColors: true }),
     );
+    const half = SQUARE_M / 2;
+    const square = [[-half, kerbM + 0.004, half] as const, [SQUARE_M, 0, 0] as const] as const;
+    this.#start = new Mesh(
+      quad(...square, [0, 0, -SQUARE_M], new Color(startColour)),
+      new MeshBasicMaterial({ vertexColors: true }),
+    );
     this.#cars = carGeometries().map(instanced);
     this.#walkers = walkerGeometries().map(instanced);
-    this.group.add(this.#ground, ...this.#cars, ...this.#walkers);
+    this.group.add(this.#ground, this.#start, ...this.#cars, ...this.#walkers);
     this.group.visible = false;
   }
 
@@ -83,6 +97,7 @@ export class Street {
     this.group.visible = shown !== null;
     if (shown === null) return;
     this.group.position.y = -shown.sunkM;
+    this.#start.visible = shown.showsStart;
     const { others, activeS } = shown;
     const leadS = Math.min(LONGEST_LEAD_S, Math.max(0, activeS - others.activeS));
     let [cars, walkers] = [0, 0];
@@ -102,8 +117,10 @@ export class Street {
   }
 
   dispose(): void {
-    this.#ground.geometry.dispose();
-    this.#ground.material.dispose();
+    for (const { geometry, material } of [this.#ground, this.#start]) {
+      geometry.dispose();
+      material.dispose();
+    }
     for (const mesh of [...this.#cars, ...this.#walkers]) {
       mesh.geometry.dispose();
       (mesh.material as MeshLambertMaterial).dispose();

@@ -125,7 +125,7 @@ export class World {
   #wasFrozen = false;
 
   constructor({ layouts, palette, language, road, hasDouble = true }: WorldOptions) {
-    this.#street = road === undefined ? null : new Street(road);
+    this.#street = road === undefined ? null : new Street(road, palette.colours.start_square);
     if (this.#street !== null) this.scene.add(this.#street.group);
     this.#area = areaOf(layouts.values(), road === undefined ? 0 : wayAcrossM(road));
     const nearest = [...layouts.values()].flatMap(({ surfaces }) =>

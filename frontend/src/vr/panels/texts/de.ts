@@ -99,6 +99,7 @@ export const de: Record<keyof typeof en, string> = {
     "Auf diesem Bildschirm: Die Leertaste drückt beide Griffe, T streckt die Arme aus.",
   "ready.body": "Die Versuchsleitung beginnt, sobald Sie bereit sind.",
   "preparing.countdown": "Beginnt in {{seconds}} s",
+  "preparing.traffic": "Beginnt, sobald der Verkehr läuft",
   "aloud.title": "Bitte antworten Sie mündlich",
   "aloud.body":
     "Die Versuchsleitung stellt Ihnen die Fragen und schreibt auf, was Sie sagen. Sie können das Headset aufbehalten.",

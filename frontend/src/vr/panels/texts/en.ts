@@ -94,6 +94,7 @@ export const en = {
   "steppingIn.keys": "On this screen: Space presses both grips, T stretches out the arms.",
   "ready.body": "The experimenter starts as soon as you are ready.",
   "preparing.countdown": "Starts in {{seconds}} s",
+  "preparing.traffic": "Starts as soon as the traffic does",
   "aloud.title": "Please answer aloud",
   "aloud.body":
     "The experimenter asks you the questions and writes down what you say. You can keep the headset on.",

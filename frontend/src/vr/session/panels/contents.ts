@@ -192,10 +192,13 @@ export class Contents {
     });
   }
 
-  #countdown(title: string, text: string | null, secondsLeft: number): PanelScreen {
+  #countdown(title: string, text: string | null, secondsLeft: number | null): PanelScreen {
     const words = this.#words;
     const [first = []] = text === null ? [] : pagesOfText(text, () => true);
-    const left = words("preparing.countdown", { seconds: secondsLeft });
+    const left =
+      secondsLeft === null
+        ? words("preparing.traffic")
+        : words("preparing.countdown", { seconds: secondsLeft });
     return {
       key: "preparing",
       isBeside: true,

@@ -294,7 +294,8 @@ export class VisitPanels {
   /** Choose the panel anew, if anything that it depends on has changed. */
   #choose({ timeS, place, state, run, tracked }: Moment): void {
     const phase = phaseOf(run, timeS);
-    const secondsLeft = phase === "preparing" ? Math.ceil(run?.preparationLeftS(timeS) ?? 0) : 0;
+    const leftS = run?.awaits === "traffic" ? null : (run?.preparationLeftS(timeS) ?? 0);
+    const secondsLeft = phase === "preparing" ? leftS && Math.ceil(leftS) : 0;
     const stop = this.#stopState(timeS);
     const isOffline = this.#offlineSinceS !== null && timeS - this.#offlineSinceS > OFFLINE_AFTER_S;
     const areFeetTracked = timeS - this.#feetSeenS < FEET_LOST_S;
@@ -391,6 +392,7 @@ function phaseOf(run: TimedRun | null, timeS: number): Situation["phase"] {
   if (run === null) return null;
   if (run.isPaused) return "paused";
   if (run.isFrozen) return "frozen";
-  if (run.preparationLeftS(timeS) !== null) return "preparing";
+  if (run.preparationLeftS(timeS) !== null)
+    return run.awaits === "start" ? "walk_back" : "preparing";
   return run instanceof BoxRun && run.state.walkBackSinceS !== null ? "walk_back" : "running";
 }

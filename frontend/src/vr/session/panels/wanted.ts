@@ -20,8 +20,8 @@ export interface Situation {
   readonly areFeetTracked: boolean;
   /** The lab's trackers are not aligned yet: the wearer has to look around. */
   readonly looksAround: boolean;
-  /** Whole seconds until a phase begins; 0 otherwise. */
-  readonly secondsLeft: number;
+  /** Whole seconds until a phase begins, null while it waits for cars; 0 otherwise. */
+  readonly secondsLeft: number | null;
   /** How far the call of somebody who has stopped has come; null while nobody has. */
   readonly stop: "telling" | "told" | "untold" | null;
   /** The connection has been down for a while. */
@@ -42,7 +42,7 @@ export type Wanted =
   | { readonly kind: "take_off"; readonly isForm: boolean }
   | { readonly kind: "feet" }
   | { readonly kind: "ready" }
-  | { readonly kind: "preparing"; readonly secondsLeft: number }
+  | { readonly kind: "preparing"; readonly secondsLeft: number | null }
   | { readonly kind: "screen_text"; readonly text: "freeze" | "walk_back" }
   | { readonly kind: "waiting" };
 

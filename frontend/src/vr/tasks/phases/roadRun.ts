@@ -4,19 +4,24 @@
  */
 import type { FloorPlace } from "../../road";
 import type { PhaseOrder, ReportBody, Road } from "../../telemetry";
-import { FreeRun, NOTHING, type Reports } from "./timedRun";
+import { type Awaited, FreeRun, NOTHING, type Reports } from "./timedRun";
 
 /** Somebody who is this far behind the other kerb is across, m. */
 const ACROSS_M = 0.3;
+/** Whoever is this near to the middle of the start square, on its pavement, stands on it, m. */
+const AT_START_M = 0.5;
 const STANDING_M_S = 0.05;
 
 export class RoadRun extends FreeRun {
   readonly #road: Road;
-  readonly #beginsAtS: number;
+  /** The active time of the scene's step 0. */
+  #beginsAtS: number;
   #done: number;
   #sinceS: number;
   #news: ReportBody[] = [];
   #side = 0;
+  #isAtStart = false;
+  #hasTraffic = true;
   #headingRad = Math.PI / 2;
   #nextStep = 0;
   #last: readonly [activeS: number, xM: number, yM: number] | null = null;
@@ -44,8 +49,25 @@ export class RoadRun extends FreeRun {
     return required !== null && this.clockRuns && this.#done >= required;
   }
 
-  /** The place of somebody who stands there, facing as before. */
-  standsAt(xM: number, zM: number): FloorPlace {
+  /**
+   * The clock starts once the participant is on the start square and cars drive; after a pause it only
+   * waits for the cars.
+   */
+  override get awaits(): Awaited | null {
+    if (this.clock.lastS === null && !this.#isAtStart) return "start";
+    return this.#hasTraffic ? null : "traffic";
+  }
+
+  /** Say whether the scene goes on: the clock waits for it. */
+  followTraffic(hasTraffic: boolean): void {
+    this.#hasTraffic = hasTraffic;
+  }
+
+  /** A scene begins now: its steps count from here. Returns where the participant stands. */
+  enterScene(timeS: number, xM: number, zM: number): FloorPlace {
+    this.#beginsAtS = this.activeS(timeS);
+    this.#nextStep = 0;
+    this.#last = null;
     return [xM, this.#yOf(zM), this.#headingRad, 0];
   }
 
@@ -53,11 +75,12 @@ export class RoadRun extends FreeRun {
   walk(timeS: number, xM: number, zM: number): readonly FloorPlace[] {
     const yM = this.#yOf(zM);
     const side = this.#sideOf(yM);
+    this.#isAtStart = Math.hypot(xM, zM) <= AT_START_M && yM <= -this.#road.road.lane_width_m;
     const activeS = this.activeS(timeS);
     if (this.#last === null || !this.clockRuns) {
-      // While the clock stands people may walk; the next step begins where they are then.
+      // While the clock stands people may walk, also across; what follows begins where they are.
       this.#last = [activeS, xM, yM];
-      this.#side = this.#side || side;
+      this.#side = side || this.#side;
       return this.clockRuns ? this.#first(xM, yM) : [];
     }
     const found = this.#places(this.#last, activeS, xM, yM);

@@ -17,6 +17,9 @@ type What = Extract<ReportBody, { kind: "phase" }>["what"];
 
 export const NOTHING: Reports = [];
 
+/** What the clock waits for: that the participant stands at the start, or that cars drive. */
+export type Awaited = "start" | "traffic";
+
 /**
  * One phase from its preparation to the end of its freeze.
  *
@@ -50,6 +53,11 @@ export abstract class TimedRun {
   protected abstract touch(timeS: number, touches: Touches): void;
   /** Reports of what has happened since the last call. */
   protected abstract news(): Reports;
+
+  /** What the clock waits for before it starts or goes on; null: nothing. */
+  get awaits(): Awaited | null {
+    return null;
+  }
 
   /** Whether the phase ends before its time is up: a practice with its tasks completed. */
   get endsEarly(): boolean {
@@ -114,7 +122,7 @@ export abstract class TimedRun {
     if (this.#isPaused && order.status === "running") {
       return [this.report("paused", timeS, "restarted")];
     }
-    if (order.resuming && this.#isPaused) {
+    if (order.resuming && this.#isPaused && this.awaits === null) {
       this.#isPaused = false;
       this.command("resume", timeS);
       return [...reports, ...this.news(), this.report("resumed", timeS)];
@@ -132,6 +140,12 @@ export abstract class TimedRun {
     if (!isConnected) {
       this.#beginsS = Math.max(this.#beginsS, timeS);
       return this.clockRuns ? this.#pause(timeS, "disconnected") : NOTHING;
+    }
+    if (this.clock.lastS === null && this.awaits !== null) {
+      // Whoever has just come to the start gets the whole preparation.
+      const leftS = this.awaits === "start" ? this.order.preparation_s : 0;
+      this.#beginsS = Math.max(this.#beginsS, timeS + leftS);
+      return NOTHING;
     }
     let reports = NOTHING;
     if (this.clock.lastS === null && timeS >= this.#beginsS) {

@@ -47,15 +47,17 @@ const MOST_YAW_RAD = 1.2;
 const NEAREST_M = 0.25;
 const FARTHEST_M = 0.75;
 const DEPTH_PER_NOTCH_M = 0.0006;
+/** A single step, and each further one while the key is held: 0.5 m/s. */
 const STEP_M = 0.3;
+const STRIDE_M = 0.65;
 const LIFT_M = 0.3;
 const MOST_STEP_M = 1.2;
 const FORWARDS: Vector = [0, 0, -1];
 const AROUND: Readonly<Partial<Record<DesktopAction, readonly [x: number, z: number]>>> = {
-  forwards: [0, -STEP_M],
-  backwards: [0, STEP_M],
-  leftwards: [-STEP_M, 0],
-  rightwards: [STEP_M, 0],
+  forwards: [0, -1],
+  backwards: [0, 1],
+  leftwards: [-1, 0],
+  rightwards: [1, 0],
 };
 
 /**
@@ -109,6 +111,7 @@ export class DesktopControls {
   isReaching = false;
   private readonly held = new Held<DesktopAction | "select">();
   private steps: readonly (0 | 1)[] = [];
+  private isWalking = false;
 
   /** The mouse moved by pixels. */
   look(rightwards: number, downwards: number): void {
@@ -184,14 +187,17 @@ export class DesktopControls {
       if (targetM !== null) person.pursue(goal("step", limb, targetM));
       return;
     }
-    let [x, z] = person.standsAt;
+    let [wayX, wayZ] = [0, 0];
     for (const action of this.held) {
-      const [dx, dz] = (action === "select" ? undefined : AROUND[action]) ?? [0, 0];
-      x += dx;
-      z += dz;
+      const [x, z] = (action === "select" ? undefined : AROUND[action]) ?? [0, 0];
+      wayX += x;
+      wayZ += z;
     }
-    const [nowX, nowZ] = person.standsAt;
-    if (x !== nowX || z !== nowZ) person.pursue(goal("walk_to", null, [x, 0, z]));
+    const [x, z] = person.standsAt;
+    const lengthM = this.isWalking ? STRIDE_M : STEP_M;
+    this.isWalking = wayX !== 0 || wayZ !== 0;
+    if (!this.isWalking) return;
+    person.pursue(goal("walk_to", null, [x + wayX * lengthM, 0, z + wayZ * lengthM]));
   }
 
   /** The place on the floor that is looked at, if a step leads there. */

@@ -84,6 +84,21 @@ describe("A participant at a desk", () => {
     expect(length(minus(end, at(stepped, "LeftLowerLeg")))).toBeLessThan(0.02);
   });
 
+  it("takes a short step for a short press, and longer ones while the key is held", () => {
+    const pressed = (seconds: number) => {
+      const desk = new Desk();
+      desk.frames(0.2);
+      const beganM = at(desk.frames(0.1), "Head")[2];
+      desk.source.controls.press("forwards");
+      desk.frames(seconds);
+      desk.source.controls.releaseAll();
+      return beganM - at(desk.frames(2), "Head")[2];
+    };
+    expect(Math.abs(pressed(1 / RATE_HZ) - 0.3)).toBeLessThan(0.05);
+    // Over a road of 5 m and to the start square's place behind it.
+    expect(pressed(15)).toBeGreaterThan(6.6);
+  });
+
   it("presses both grips, and selects with the hand that it uses", () => {
     const desk = new Desk();
     const { controls } = desk.source;
