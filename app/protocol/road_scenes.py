@@ -190,6 +190,12 @@ class StudyRoad(_Strict):
     participant_late: LateFile = LateFile()
     partners: Annotated[tuple[OfStudy, ...], Field(min_length=1, max_length=20)]
 
+    def programs(self) -> tuple[str, ...]:
+        """Return what somebody has to start, each with the address to which it connects."""
+        return tuple(
+            f"{one.name}: 127.0.0.1:{one.port}" for one in self.partners if one.kind == "process"
+        )
+
     @model_validator(mode="after")
     def _names_differ(self) -> Self:
         names = [PARTICIPANT, *(one.name for one in self.partners)]

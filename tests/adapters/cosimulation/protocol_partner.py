@@ -1,6 +1,7 @@
 """A partner as somebody would write it with nothing but docs/crossing.md and Python's own modules.
 
-Run as a script: HOST:PORT NAME DELAYS_SEED FAULT. It walks 1 cm a step towards everybody's mean.
+Run as a script: HOST:PORT NAME DELAYS_SEED FAULT. It walks 1 cm a step towards everybody's mean,
+and tries to connect for half a minute.
 """
 
 import json
@@ -16,7 +17,7 @@ def main() -> None:
     address, name, seed, fault = sys.argv[1:]
     host, port = address.split(":")
     delays = random.Random(seed)  # noqa: S311 - delays, no secrets
-    connection = socket.create_connection((host, int(port)))
+    connection = _connected(host, int(port))
     received, x_m, steps = connection.makefile("r", encoding="utf-8"), 20.0, 0
 
     def say(message: dict[str, object]) -> None:
@@ -43,6 +44,17 @@ def main() -> None:
         if steps == 20 and fault == "misspells":
             actor["speed"] = actor.pop("speed_m_s")
         say({"type": "state", "time_s": message.get("to_s", 0.0), "actors": [actor]})
+
+
+def _connected(host: str, port: int) -> socket.socket:
+    until_s = time.monotonic() + 30.0
+    while True:
+        try:
+            return socket.create_connection((host, port))
+        except ConnectionRefusedError:
+            if time.monotonic() > until_s:
+                raise
+            time.sleep(0.1)
 
 
 if __name__ == "__main__":

@@ -32,13 +32,17 @@ Ended = Callable[[str], None]
 
 @dataclass(frozen=True)
 class SceneState:
-    """How a scene goes, for the operator; `is_heard`: the headset's socket is open."""
+    """How a scene goes, for the operator.
+
+    `is_heard`: the headset's socket is open. `waits_for`: programs that have not connected yet.
+    """
 
     phase_id: int
     steps: int
     guesses: int
     cars: int
     is_heard: bool
+    waits_for: tuple[str, ...]
     problem: str
     is_over: bool
 
@@ -61,6 +65,7 @@ class RoadScene:
         self._lines: list[str] = []
         self._chunk = 1
         self._steps = self._guesses = self._cars = 0
+        self._has_begun = False
         self._thread = threading.Thread(target=self._run, name="road", daemon=True)
 
     def start(self) -> None:
@@ -78,7 +83,13 @@ class RoadScene:
         """How it goes now."""
         heard = self.participant.is_heard
         now = (self.plan.phase_id, self._steps, self._guesses, self._cars, heard)
-        return SceneState(*now, self.problem, self.is_over)
+        has_begun = self._has_begun or self.is_over
+        return SceneState(
+            *now,
+            () if has_begun else self._road.programs(),
+            self.problem,
+            self.is_over,
+        )
 
     def _run(self) -> None:
         try:
@@ -103,7 +114,7 @@ class RoadScene:
                 self.on_end(self.problem)
 
     def _note(self, number: int, rows: tuple[Row, ...]) -> None:
-        self._steps = number
+        self._steps, self._has_begun = number, True
         self._guesses += sum(row.origin == "guessed" for row in rows)
         self._cars = sum(row.state.kind == "car" for row in rows)
         self._lines.append(step_line(number, rows, self._road.step_s))

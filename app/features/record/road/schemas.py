@@ -44,13 +44,18 @@ class RoadRunView(BaseModel):
 
 
 class RoadNow(BaseModel):
-    """How the newest scene goes: `problem` says why it broke off, empty if it did not."""
+    """How the newest scene goes.
+
+    `waits_for`: programs that have not connected yet, with their addresses. `problem`: why it broke
+    off, empty if it did not.
+    """
 
     phase_id: int
     steps: int
     guesses: int
     cars: int
     is_heard: bool
+    waits_for: list[str]
     is_over: bool
     problem: str
 

@@ -4,6 +4,7 @@ import type { components } from "./schema";
 
 export type SessionRoad = components["schemas"]["SessionRoad"];
 export type RoadRun = SessionRoad["runs"][number];
+export type Crossing = RoadRun["crossings"][number];
 
 export const road = {
   ofSession: (session_id: string) =>

@@ -9859,7 +9859,10 @@ export interface components {
         };
         /**
          * RoadNow
-         * @description How the newest scene goes: `problem` says why it broke off, empty if it did not.
+         * @description How the newest scene goes.
+         *
+         *     `waits_for`: programs that have not connected yet, with their addresses. `problem`: why it broke
+         *     off, empty if it did not.
          */
         readonly RoadNow: {
             /** Cars */
@@ -9876,6 +9879,8 @@ export interface components {
             readonly problem: string;
             /** Steps */
             readonly steps: number;
+            /** Waits For */
+            readonly waits_for: readonly string[];
         };
         /**
          * RoadRunView

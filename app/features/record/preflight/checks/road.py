@@ -19,8 +19,8 @@ def _road(situation: Situation) -> Found:
     missing = missing_for(road)
     if missing:
         return Found("missing", details=(missing,))
-    waited = [f"{one.name}: 127.0.0.1:{one.port}" for one in road.partners if one.kind == "process"]
-    return Found("process" if waited else "ok", details=tuple(waited))
+    programs = road.programs()
+    return Found("process" if programs else "ok", details=programs)
 
 
 ROAD = StateCheck(

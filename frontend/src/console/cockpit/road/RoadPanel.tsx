@@ -1,7 +1,8 @@
 /** The road that the participant crosses: whether its scene runs, and how each crossing went. */
-import { type RoadRun, roadRecordOf, type SessionRoad } from "@shared/api/road";
+import { type Crossing, type RoadRun, roadRecordOf, type SessionRoad } from "@shared/api/road";
 import type { SessionView } from "@shared/api/types";
 import { decimals } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
@@ -9,6 +10,7 @@ import { useTexts } from "../../i18n";
 import { sessionRoadQuery } from "../../queries";
 import { ScrollBox } from "../../ui/tables";
 import cockpit from "../Cockpit.module.css";
+import panels from "../Panels.module.css";
 import classes from "./RoadPanel.module.css";
 
 /** Nothing is shown for a study without a road. */
@@ -16,52 +18,59 @@ export function RoadPanel({ session }: { readonly session: SessionView }): JSX.E
   const { t } = useTexts();
   const { data: road } = useQuery(sessionRoadQuery(session.id));
   if (road === undefined || !road.has_road) return <></>;
-  const broken = road.now?.problem || (road.runs.at(-1)?.reason ?? "");
+  const problem = problemNow(session, road);
   return (
     <section aria-label={t("road.title")}>
       <h2 className={cockpit.sectionTitle}>{t("road.title")}</h2>
       {road.missing !== "" && <Notice tone="bad" title={road.missing} />}
-      {broken !== "" && (
-        <Notice tone="bad" title={t("road.problem", { problem: broken })}>
-          {t("road.problem.do")}
+      {problem === null ? (
+        <p className={classes.state} role="status">
+          <Now now={road.now} />
+        </p>
+      ) : (
+        <Notice tone="bad" title={t("road.problem")} remedy={t("road.problem.do")}>
+          {problem}
         </Notice>
       )}
-      <p className={classes.state} role="status">
-        <Now now={road.now} />
-      </p>
-      <Crossings runs={road.runs} />
-      <p className={classes.records}>
-        {road.runs.map(({ id, phase_id, part }) => (
-          <a
-            key={id}
-            href={roadRecordOf(session.id, id)}
-            download={`road_${phase_id}_${part}.jsonl`}
-          >
-            {`${t("road.record")} ${phase_id}.${part}`}
-          </a>
-        ))}
-      </p>
+      {road.runs.length === 0 ? (
+        <p className={panels.empty}>{t("road.empty")}</p>
+      ) : (
+        <Runs session={session} runs={road.runs} />
+      )}
     </section>
   );
+}
+
+/** Why the scene of the phase that is in progress broke off; null if it did not. */
+function problemNow(session: SessionView, { now, runs }: SessionRoad): string | null {
+  const last = runs.at(-1);
+  const phase = session.phases.find(({ phase_id }) => phase_id === last?.phase_id);
+  const isPresent = phase !== undefined && phase.status !== "done" && phase.status !== "voided";
+  if (!isPresent || (now !== null && !now.is_over)) return null;
+  return now?.problem || last?.reason || null;
 }
 
 function Now({ now }: Pick<SessionRoad, "now">): JSX.Element {
   const { t } = useTexts();
   if (now === null) return <>{t("road.waits")}</>;
-  const guessed = now.guesses > 0 ? ` · ${t("road.guesses")}: ${now.guesses}` : "";
+  const guessed = now.guesses > 0 ? ` · ${t("road.guesses", { count: now.guesses })}` : "";
   if (now.is_over) return <>{t("road.over") + guessed}</>;
-  if (!now.is_heard) return <>{t("road.unheard")}</>;
-  return <>{t("road.runs", { cars: now.cars }) + guessed}</>;
+  if (now.waits_for.length > 0) {
+    return <>{t("road.unconnected", { programs: now.waits_for.join(", ") })}</>;
+  }
+  if (!now.is_heard) return <>{t("road.unheard") + guessed}</>;
+  return <>{t("road.runs", { count: now.cars }) + guessed}</>;
 }
 
-function Crossings({ runs }: { readonly runs: readonly RoadRun[] }): JSX.Element | null {
-  const { t, language } = useTexts();
-  const rows = runs.flatMap((run) => run.crossings.map((one) => ({ run: run.id, ...one })));
-  const done = rows.filter((one) => one.steps_on_s !== null);
-  if (done.length === 0) return null;
-  const seconds = (value: number) => `${decimals(value, language, 1)} s`;
+interface RunsProps {
+  readonly session: SessionView;
+  readonly runs: readonly RoadRun[];
+}
+
+function Runs({ session, runs }: RunsProps): JSX.Element {
+  const { t } = useTexts();
   return (
-    <ScrollBox label={t("road.title")}>
+    <ScrollBox label={t("road.crossings")}>
       <table className={`${classes.table} numbers`}>
         <thead>
           <tr>
@@ -72,29 +81,74 @@ function Crossings({ runs }: { readonly runs: readonly RoadRun[] }): JSX.Element
             <th scope="col">{t("road.closest")}</th>
           </tr>
         </thead>
-        <tbody>
-          {done.map((one) => (
-            <tr key={`${one.run}.${one.number}`}>
-              <th scope="row">
-                {`${one.phase_id}.${one.number}`}
-                {one.steps_off_s !== null && !one.is_across && ` (${t("road.turned")})`}
-              </th>
-              <td>{seconds(one.waited_s)}</td>
-              <td>{one.gap_accepted_s === null ? t("road.none") : seconds(one.gap_accepted_s)}</td>
-              <td>{one.gaps_refused_s.length}</td>
-              <td className={one.collision_car === null ? undefined : classes.hit}>
-                {one.collision_car !== null
-                  ? t("road.collision", {
-                      speed: decimals(one.collision_speed_m_s ?? 0, language, 1),
-                    })
-                  : one.closest_m === null
-                    ? "–"
-                    : `${decimals(one.closest_m, language, 1)} m`}
-              </td>
-            </tr>
-          ))}
-        </tbody>
+        {runs.map((run) => (
+          <Run key={run.id} session={session} run={run} />
+        ))}
       </table>
     </ScrollBox>
+  );
+}
+
+function Run({ session, run }: { readonly session: SessionView; readonly run: RoadRun }) {
+  const { t } = useTexts();
+  const phase = session.phases.find(({ phase_id }) => phase_id === run.phase_id);
+  const block = phase === undefined ? null : (session.steps[phase.step_index]?.block ?? null);
+  const attempt = phase?.attempt ?? 1;
+  const name = [
+    block === null ? t("road.phase", { number: run.phase_id }) : t("road.block", { number: block }),
+    attempt > 1 ? t("timeline.attempt", { number: attempt }) : null,
+    run.part > 1 ? t("road.part", { number: run.part }) : null,
+    run.reason === "" ? null : t("road.brokeOff"),
+  ];
+  const done = run.crossings.filter(({ steps_on_s }) => steps_on_s !== null);
+  const file = `road_${run.phase_id}_${run.part}.jsonl`;
+  return (
+    <tbody>
+      <tr className={classes.run}>
+        <th scope="rowgroup" colSpan={4}>
+          {name.filter((part) => part !== null).join(" · ")}
+        </th>
+        <td>
+          <a href={roadRecordOf(session.id, run.id)} download={file} title={file}>
+            {t("road.record")}
+          </a>
+        </td>
+      </tr>
+      {done.map((one) => (
+        <CrossingRow key={one.number} one={one} />
+      ))}
+      {done.length === 0 && run.ended !== "running" && (
+        <tr>
+          <td colSpan={5} className={classes.none}>
+            {t("road.noCrossing")}
+          </td>
+        </tr>
+      )}
+    </tbody>
+  );
+}
+
+function CrossingRow({ one }: { readonly one: Crossing }): JSX.Element {
+  const { t, language } = useTexts();
+  const shown = (value: number) => decimals(value, language, 1);
+  const isTurned = one.steps_off_s !== null && !one.is_across;
+  return (
+    <tr>
+      <th scope="row">
+        {one.number}
+        {isTurned && ` ${t("road.turned")}`}
+      </th>
+      <td>{shown(one.waited_s)}</td>
+      <td>{one.gap_accepted_s === null ? t("road.none") : shown(one.gap_accepted_s)}</td>
+      <td>{one.gaps_refused_s.length}</td>
+      {one.collision_car === null ? (
+        <td>{one.closest_m === null ? "–" : shown(one.closest_m)}</td>
+      ) : (
+        <td className={classes.hit}>
+          <Icon name="alert" size={14} />{" "}
+          {t("road.collision", { speed: shown(one.collision_speed_m_s ?? 0) })}
+        </td>
+      )}
+    </tr>
   );
 }

@@ -29,8 +29,8 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
   const report = useReport(session, store);
   const now = useNow(report.running);
   const { current } = session;
-  // A calibration is shown as such; otherwise only a scene that nobody sees holds a headset up.
-  const isPending = current?.resuming === true && current.pause_reason !== "calibration";
+  // A calibration and the traffic are shown as such; else only a scene that nobody sees holds it up.
+  const isPending = current?.resuming === true && !SHOWN_ELSEWHERE.has(current.pause_reason ?? "");
   const isUnseen = useLasting(isPending, PENDING_MS);
   if (current === null) return null;
   const active = activeAt(report, now);
@@ -138,6 +138,8 @@ function warningOf(
   if (isUnseen) return "clock.unseen";
   return isHolding(report, now) ? "clock.holding" : null;
 }
+
+const SHOWN_ELSEWHERE: ReadonlySet<string> = new Set(["calibration", "road"]);
 
 /** A headset whose wearer sees the scene resumes within a few frames; after this it does not. */
 const PENDING_MS = 2000;
