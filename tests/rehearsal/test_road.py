@@ -94,7 +94,10 @@ def _check_results(server: LiveServer) -> None:
             drawn = build_dashboard(db, "road-short", "simulated", NO_FILTER)
     finally:
         database.close()
-    assert drawn.figures
+    crossings = {one.key: one for one in drawn.figures if one.key.startswith("crossing_")}
+    assert len(crossings) == 5
+    waited = crossings["crossing_waited_s"]
+    assert (waited.n, waited.empty) == (1, None)
 
 
 def _check_export(api: Any, report: RehearsalReport) -> None:

@@ -25,6 +25,7 @@ from app.features.results.analysis.tables import (
     phases_table,
     present_course_table,
     quality_table,
+    road_crossings_table,
     scores_table,
     sessions_table,
 )
@@ -48,6 +49,7 @@ READ: Mapping[str, Callable[[Session, str, DashboardKind], pd.DataFrame]] = {
     "courses": present_course_table,
     "quality": quality_table,
     "alarms": alarms_table,
+    "crossings": road_crossings_table,
     "limbs": phase_limbs,
 }
 
@@ -145,6 +147,11 @@ class Material:
     def alarms(self) -> pd.DataFrame:
         """Return the table of alarms, one row per alarm raised or cleared."""
         return self.tables["alarms"]
+
+    @property
+    def crossings(self) -> pd.DataFrame:
+        """Return the table of crossings of the study's road, one row per crossing."""
+        return self.tables["crossings"]
 
     @property
     def limbs(self) -> set[str]:

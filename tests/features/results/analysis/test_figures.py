@@ -9,6 +9,7 @@ from app.features.results.analysis.figures import (
     completions_drawing,
     contact_map_drawing,
     contacts_drawing,
+    crossings_drawings,
     embodiment_drawings,
     joint_error_drawing,
     joint_error_map_drawing,
@@ -327,3 +328,67 @@ def test_orders_that_share_latencies_are_named_by_their_conditions() -> None:
     assert figure["data"][0]["x"] == ["female \u2192 own", "own \u2192 female"]
     assert figure["layout"]["xaxis"]["title"]["text"] == "order of conditions"
     assert " ms" not in figure["data"][0]["hovertemplate"]
+
+
+def _crossing(code: str, latency: float, **changes: object) -> dict[str, object]:
+    row = {
+        "participant_code": code,
+        "latency_ms": latency,
+        "steps_on_s": 3.0,
+        "is_across": True,
+        "gap_accepted_s": 5.0,
+        "waited_s": 2.0,
+        "least_post_encroachment_s": 1.5,
+        "closest_m": 3.0,
+        "collision": False,
+    }
+    return {**row, **changes}
+
+
+def test_crossings_are_drawn_as_means_of_each_participant_by_latency() -> None:
+    """Two crossings of 4 and 6 s are 5 s; a missing gap and a turn count where they belong."""
+    rows = pd.DataFrame(
+        [
+            _crossing("P1", 0.0, gap_accepted_s=4.0),
+            _crossing("P1", 0.0, gap_accepted_s=6.0),
+            _crossing("P1", 200.0, gap_accepted_s=None, closest_m=0.0, collision=True),
+            _crossing("P1", 200.0, is_across=False, waited_s=99.0, gap_accepted_s=None),
+            _crossing("P2", 200.0, gap_accepted_s=7.0),
+            # Never on the carriageway.
+            _crossing("P3", 0.0, steps_on_s=None, is_across=False),
+        ]
+    )
+    drawings = {one.key: one for one in crossings_drawings(rows)}
+    assert list(drawings) == [
+        "crossing_gap_accepted_s",
+        "crossing_waited_s",
+        "crossing_least_post_encroachment_s",
+        "crossing_closest_m",
+        "crossing_collision",
+    ]
+
+    def means(key: str) -> list[tuple[float, float, int]]:
+        data = drawings[f"crossing_{key}"].data
+        own = data[data["row"] == "mean"]
+        return list(zip(own["latency_ms"], own["value"], own["n"], strict=True))
+
+    assert means("gap_accepted_s") == [(0.0, 5.0, 1), (200.0, 7.0, 1)]
+    assert means("waited_s") == [(0.0, 2.0, 1), (200.0, 2.0, 2)]
+    assert means("closest_m") == [(0.0, 3.0, 1), (200.0, 1.5, 2)]
+    # One of the two times that P1 was on the carriageway, none of P2's.
+    assert means("collision") == [(0.0, 0.0, 1), (200.0, 0.25, 2)]
+    gaps = drawings["crossing_gap_accepted_s"]
+    assert gaps.n == 2
+    assert "limb" not in gaps.data
+    figure = gaps.as_json()
+    assert figure is not None
+    assert figure["layout"]["yaxis"]["title"]["text"] == "accepted gap (s)"
+    assert figure["layout"]["xaxis"]["title"]["text"] == "added latency (ms)"
+
+
+def test_crossings_that_nobody_has_done_are_said_to_be_missing() -> None:
+    """Without a crossing each figure says what is missing."""
+    nobody = pd.DataFrame([_crossing("P1", 0.0, steps_on_s=None)])
+    for drawing in crossings_drawings(nobody):
+        assert drawing.figure is None
+        assert drawing.empty == "No participant has a crossing of the road in a finished phase yet."

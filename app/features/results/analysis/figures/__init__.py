@@ -10,6 +10,7 @@ from app.features.results.analysis.figures.by_demographics import demographics_d
 from app.features.results.analysis.figures.completions import completions_drawing, learning_drawing
 from app.features.results.analysis.figures.contact_map import contact_map_drawing
 from app.features.results.analysis.figures.contacts import contacts_drawing
+from app.features.results.analysis.figures.crossings import crossings_drawings
 from app.features.results.analysis.figures.drawing import Drawing
 from app.features.results.analysis.figures.embodiment import embodiment_drawings
 from app.features.results.analysis.figures.exclusions import exclusions_drawing
@@ -34,6 +35,7 @@ __all__ = [
     "completions_drawing",
     "contact_map_drawing",
     "contacts_drawing",
+    "crossings_drawings",
     "demographics_drawings",
     "embodiment_drawings",
     "exclusions_drawing",

@@ -13,6 +13,7 @@ from scipy.special import stdtrit
 from app.features.results.analysis.figures.theme import (
     BLUE,
     CALM,
+    GREEN,
     NO_LEGEND_PX,
     VERMILLION,
     latency_axis,
@@ -22,7 +23,14 @@ from app.features.results.analysis.figures.theme import (
 
 LEVEL = 0.95
 LIMBS = ("hand", "foot")
-_STYLES = {"hand": (BLUE, "circle", "solid"), "foot": (VERMILLION, "square", "dash")}
+ROAD = "road"
+"""Stands for a limb where something is done with none: crossing the road."""
+_PANELS = {"hand": "Hand task", "foot": "Foot task", ROAD: "On the road"}
+_STYLES = {
+    "hand": (BLUE, "circle", "solid"),
+    "foot": (VERMILLION, "square", "dash"),
+    ROAD: (GREEN, "diamond", "solid"),
+}
 MEANS = (
     "Thin lines are participants; the thick line is their mean with its 95 % confidence interval "
     "(t distribution). The shape beside it is the distribution of 5 or more participants; n "
@@ -107,11 +115,9 @@ def latency_figure(
     value). `axis` is the title of the y axis with its unit, `limits` the lowest and highest
     possible value.
     """
-    limbs = [limb for limb in LIMBS if (values["limb"] == limb).any()]
+    limbs = [limb for limb in _PANELS if (values["limb"] == limb).any()]
     places = sorted(float(place) for place in values[across.column].unique())
-    figure = new_figure(
-        titles=tuple(f"{limb.capitalize()} task" for limb in limbs) or ("",), shared_yaxes=True
-    )
+    figure = new_figure(titles=tuple(_PANELS[limb] for limb in limbs) or ("",), shared_yaxes=True)
     latency_axis(figure, places)
     for column, limb in enumerate(limbs, start=1):
         own = values[values["limb"] == limb].rename(columns={across.column: "x"})
@@ -145,7 +151,7 @@ def latency_figure(
 def drawn_rows(values: pd.DataFrame, unit: str, across: Across = LATENCY) -> pd.DataFrame:
     """Return the rows that `latency_figure` draws: participants' values, means, intervals."""
     rows = [values.assign(row="participant")]
-    for limb in LIMBS:
+    for limb in _PANELS:
         own = values[values["limb"] == limb].rename(columns={across.column: "x"})
         means = [
             {

@@ -18,6 +18,7 @@ from app.features.results.analysis.figures.by_demographics import demographics_d
 from app.features.results.analysis.figures.completions import completions_drawing, learning_drawing
 from app.features.results.analysis.figures.contact_map import contact_map_drawing
 from app.features.results.analysis.figures.contacts import contacts_drawing
+from app.features.results.analysis.figures.crossings import crossings_drawings
 from app.features.results.analysis.figures.drawing import Drawing, Group
 from app.features.results.analysis.figures.embodiment import embodiment_drawings
 from app.features.results.analysis.figures.exclusions import exclusions_drawing
@@ -66,6 +67,11 @@ class Rows:
     def contacts(self) -> pd.DataFrame:
         """Return the valid rows of the table of contacts."""
         return self.counting(self.filtered.contacts)
+
+    def crossings(self) -> Iterator[Drawing]:
+        """Yield the figures of crossings, where the study has a road."""
+        if self.filtered.protocol.road is not None:
+            yield from crossings_drawings(self.counting(self.filtered.crossings))
 
     @cached_property
     def touching(self) -> pd.DataFrame:
@@ -121,6 +127,7 @@ FIGURES: tuple[Figure, ...] = (
         ),
     ),
     Figure("tasks", lambda rows: rows.by_body("tasks")),
+    Figure("tasks", Rows.crossings),
     Figure.one("tasks", lambda rows: completions_drawing(rows.phases).tested_as("completions")),
     Figure.one("tasks", lambda rows: learning_drawing(rows.phases)),
     Figure.one(
