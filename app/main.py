@@ -27,6 +27,7 @@ from app.features.movement.performers import Performers
 from app.features.movement.tuning import TuningDesk, TuningQueue
 from app.features.movement.walking import FitQueue, PredictionQueue
 from app.features.people.accounts import RefusedSignIns, ensure_admin
+from app.features.record.companion import Companions
 from app.features.record.demo import DemoRunner
 from app.features.record.lab_trackers import LabTrackers
 from app.features.record.road import Roads
@@ -64,6 +65,7 @@ PARTS: tuple[PartMaker, ...] = (
     LiveTracking,
     Performers,
     LabTrackers,
+    Companions,
     Roads,
     ExportQueue.of,
     StorageMeter.of,

@@ -31,6 +31,7 @@ from app.features.record.alarms.endpoints import router as alarms
 from app.features.record.calibrations.endpoints import router as calibrations
 from app.features.record.cockpit import router as watching
 from app.features.record.cockpit.endpoints import router as sessions
+from app.features.record.companion.endpoints import router as companion
 from app.features.record.demo.endpoints import router as demo
 from app.features.record.devices.endpoints import router as devices
 from app.features.record.headset.endpoints import router as headset
@@ -126,7 +127,7 @@ def _routes() -> tuple[BaseRoute, ...]:
         *(tablet, sessions, watching),
         *(accounts, people, audit, studies, instruments, participants),
         *(devices, calls, headset, headset_forms, alarms, suggestions, calibrations),
-        *(self_tests, lab_trackers, road),
+        *(self_tests, lab_trackers, companion, road),
         *(analysis, exports, receipts, rights, network, captures, on_avatars, avatars),
         *(
             humanoids,

@@ -216,7 +216,9 @@ class TrackerChunk(Base):
     `number` counts the chunks of a session from 1. `source` is the source's label, `address` its
     sender's; the head by the headset itself has the door `headset`. `first_s` and `last_s` are
     arrivals by the server's monotonic clock, `first_at` the time of day at the first one.
-    `trackers`: their names, to which the columns in `data` refer.
+    `trackers`: their names, to which the columns in `data` refer. Of a performer who was shown to
+    the participant, a chunk has the poses as they were sent to the headset, at these times; its
+    `encoding` is another, and `trackers` are the joints.
     """
 
     __tablename__ = "tracker_chunks"

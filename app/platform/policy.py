@@ -135,6 +135,8 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/sessions/{session_id}/road/{run_id}": LAB,
     "GET /api/sessions/{session_id}/trackers": LAB,
     "PUT /api/sessions/{session_id}/trackers": RUNNERS,
+    "GET /api/sessions/{session_id}/companion": LAB,
+    "PUT /api/sessions/{session_id}/companion": RUNNERS,
     # Walking: scenes, walks, and the models that are fitted to them.
     "GET /api/avatar-tunings": LAB,
     "POST /api/avatar-tunings": DESIGNERS,
@@ -242,6 +244,7 @@ POLICY: dict[str, frozenset[str]] = {
     "WEBSOCKET /api/vr/stream": HEADSET,
     "WEBSOCKET /api/vr/road": HEADSET,
     "WEBSOCKET /api/vr/trackers": HEADSET,
+    "WEBSOCKET /api/vr/companion": HEADSET,
 }
 
 

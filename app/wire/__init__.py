@@ -17,6 +17,12 @@ from app.wire.batch import (
     decode_batch,
     encode_batch,
 )
+from app.wire.companion import (
+    COMPANION_SEEN,
+    CompanionSeen,
+    CompanionState,
+    companion_pose,
+)
 from app.wire.messages import (
     CLIENT_MESSAGE,
     GOALS,
@@ -86,6 +92,7 @@ __all__ = [
     "BODY_STREAMS",
     "CLIENT_MESSAGE",
     "CODE_OF_STREAM",
+    "COMPANION_SEEN",
     "FINGER_STREAMS",
     "FINGER_VALUES_PER_FRAME",
     "FROM_ROAD_CLIENT",
@@ -112,6 +119,8 @@ __all__ = [
     "CalibrationStepReport",
     "CallReport",
     "ClientMessages",
+    "CompanionSeen",
+    "CompanionState",
     "CompletionReport",
     "ContactReport",
     "Failure",
@@ -159,6 +168,7 @@ __all__ = [
     "TrackerPlaces",
     "TrackersState",
     "Welcome",
+    "companion_pose",
     "decode_batch",
     "encode_batch",
     "flag_batches",

@@ -9,6 +9,7 @@ NOT_OVER_HTTP = {
     "WEBSOCKET /api/vr/stream",
     "WEBSOCKET /api/vr/road",
     "WEBSOCKET /api/vr/trackers",
+    "WEBSOCKET /api/vr/companion",
     "WEBSOCKET /api/vr/self-tests/storage",
     "WEBSOCKET /api/sessions/{session_id}/pose",
     "WEBSOCKET /api/trackers/performers/watch",

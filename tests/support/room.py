@@ -116,6 +116,7 @@ EVERYTHING: Moment = {
     "controllers": True,
     "isBoundarySmall": True,
     "isCurtainDrawn": True,
+    "companionAtM": [1.55, 0, -0.9],
     "frames": 9,
     "panel": "question",
 }

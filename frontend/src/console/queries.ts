@@ -1,5 +1,6 @@
 /** The console's queries to the server, each with its cache key. */
 import { analysis, type FigureGroup, type Filter, preregistrations } from "@shared/api/analysis";
+import { companions } from "@shared/api/companion";
 import { drafts, instruments, versions } from "@shared/api/drafts";
 import { network, sessions, studies } from "@shared/api/endpoints";
 import { demo, exports, lab, storageRoom, tryouts } from "@shared/api/housekeeping";
@@ -162,6 +163,14 @@ export const sessionTrackersQuery = (sessionId: string) =>
   queryOptions({
     queryKey: ["session-trackers", sessionId],
     queryFn: () => trackers.ofSession(sessionId),
+    refetchInterval: 1000,
+  });
+
+/** Asked again every second: the operator sees whether the participant is shown somebody. */
+export const sessionCompanionQuery = (sessionId: string) =>
+  queryOptions({
+    queryKey: ["session-companion", sessionId],
+    queryFn: () => companions.ofSession(sessionId),
     refetchInterval: 1000,
   });
 

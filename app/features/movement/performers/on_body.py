@@ -73,6 +73,10 @@ class OnBody:
     """Moves one body as one performer moves; its state is scratch memory, so for one thread.
 
     Making it loads compiled code for half a second, the first time in a process.
+
+    Attributes:
+        stood_m, faced: where the body stood in the standing frame, and the unit vector of the
+            direction in which it faced, both (x, z).
     """
 
     def __init__(self, agreed: Agreed, joint_map: JointMap, body: Body, ground: GroundKey) -> None:
@@ -83,7 +87,8 @@ class OnBody:
         self.unmapped = self._retargeter.unmapped_avatar_joints
         standing = agreed.standing
         root, local = self._retargeter.frame(standing.root_m, standing.rotations)
-        self.line = _line(ground, *_stance(body, root, local))
+        self.stood_m, self.faced = _stance(body, root, local)
+        self.line = _line(ground, self.stood_m, self.faced)
         self.ground: Ground = _ground(ground, self.line)
         self._is_flat = self.line is None
         self._offset_m = self._retargeter.hips_offset_m(

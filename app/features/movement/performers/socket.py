@@ -28,13 +28,12 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from app.errors import InvalidInput, NotSignedIn, ReembodyError
 from app.features.movement.captures import CaptureQueue, mapped_capture
-from app.features.movement.live import SILENT_S
 from app.features.movement.performers.assembly import BodyFrame
 from app.features.movement.performers.on_body import Body, GroundKey, OnBody, reference_body
 from app.features.movement.performers.performer import Agreed, Performer, PerformerName
 from app.features.movement.performers.schemas import BodySetup, BodyState
 from app.features.movement.performers.service import Performers
-from app.features.movement.performers.views import LISTED, joint_map_of
+from app.features.movement.performers.views import body_state, joint_map_of
 from app.features.movement.performers.worker_tasks import skeleton_of
 from app.platform.context import AppContext
 from app.platform.dependencies import authorised_caller
@@ -216,23 +215,10 @@ class _Watcher:
         self, performer: Performer | None, others: tuple[str, ...], now_s: float
     ) -> None:
         """Send the state, if it is another one."""
-        state = self._now(performer, others, now_s)
+        state = body_state(performer, others, self._problems, now_s)
         if state != self._state:
             self._state = state
             await self.socket.send_text(state.model_dump_json())
-
-    def _now(self, performer: Performer | None, others: tuple[str, ...], now_s: float) -> BodyState:
-        if performer is None:
-            return BodyState(state="absent")
-        told = {"address": performer.address, "others": list(others)}
-        if performer.newest is None:
-            missing = list(performer.missing[:LISTED])
-            return BodyState(state="gathering", missing=missing, **told)
-        if self._problems:
-            return BodyState(state="unusable", problems=list(self._problems[:LISTED]), **told)
-        if now_s - performer.last_s > SILENT_S:
-            return BodyState(state="silent", **told)
-        return BodyState(state="ready", **told)
 
     async def _show(self, performer: Performer, performers: Performers) -> None:
         frame, body = performer.newest, self._body

@@ -10,7 +10,12 @@ from app.features.movement.captures import map_of_rig
 from app.features.movement.live import SILENT_S
 from app.features.movement.performers.performer import Performer
 from app.features.movement.performers.recording import Recording
-from app.features.movement.performers.schemas import PerformersView, PerformerView, RecordingView
+from app.features.movement.performers.schemas import (
+    BodyState,
+    PerformersView,
+    PerformerView,
+    RecordingView,
+)
 from app.features.movement.performers.service import Performers
 from app.models import SavedJointMap
 from app.science.retargeting import JointMap, JointMapError, check_joint_map, propose_joint_map
@@ -39,6 +44,26 @@ def joint_map_of(db: Session, rig: Rig) -> tuple[JointMap, tuple[str, ...]]:
         current = map_of_rig(db, rig)
         return current.joint_map, tuple(f"{at}: {problem}" for at, problem in current.problems)
     return _proposed(rig.names, rig.parents)
+
+
+def body_state(
+    performer: Performer | None, others: tuple[str, ...], problems: tuple[str, ...], now_s: float
+) -> BodyState:
+    """Return why a body that a performer shall move does, or does not.
+
+    `others` are other senders of the performer's name, `problems` those of the joint map.
+    """
+    if performer is None:
+        return BodyState(state="absent")
+    told = {"address": performer.address, "others": list(others)}
+    if performer.newest is None:
+        missing = list(performer.missing[:LISTED])
+        return BodyState(state="gathering", missing=missing, **told)
+    if problems:
+        return BodyState(state="unusable", problems=list(problems[:LISTED]), **told)
+    if now_s - performer.last_s > SILENT_S:
+        return BodyState(state="silent", **told)
+    return BodyState(state="ready", **told)
 
 
 @lru_cache(maxsize=64)

@@ -35,6 +35,7 @@ from app.features.record.sessions import (
     contents_of,
     protocol_of_session,
     require_capture,
+    state_of,
     store_content,
 )
 from app.models import StudySession
@@ -224,7 +225,7 @@ def record_avatar(
 
 
 def require_own_body(db: Session, session_id: str, content_hash: str) -> None:
-    """Raise NotFound unless the session's avatar can wear the model with this hash."""
+    """Raise NotFound unless the session's headset can show the model with this hash."""
     if content_hash not in _bodies_of(db, session_by_id(db, session_id)):
         raise NotFound(
             "the avatar of this session wears no such body",
@@ -234,17 +235,19 @@ def require_own_body(db: Session, session_id: str, content_hash: str) -> None:
 
 
 def _bodies_of(db: Session, session: StudySession) -> frozenset[str]:
-    """Return the hashes of all models that the session's avatar can wear, at any time.
+    """Return the hashes of all models that the session's headset can show, at any time.
 
     They are the body of the avatar's configuration and those that the study's conditions name, so
-    neither an answer nor a request tells which body comes next.
+    neither an answer nor a request tells which body comes next; and that of the companion.
     """
+    companion = state_of(session).companion
+    shown = None if companion is None else companion.humanoid
     if session.avatar_configuration_hash is None:
-        return frozenset()
+        return frozenset() if shown is None else frozenset((shown,))
     configured = configuration_by_hash(db, session.avatar_configuration_hash).humanoid
     named = named_bodies(db)
     prescribed = (named.get(name) for name in protocol_of_session(db, session).bodies)
-    return frozenset(one for one in (configured, *prescribed) if one is not None)
+    return frozenset(one for one in (configured, shown, *prescribed) if one is not None)
 
 
 def _with_body(

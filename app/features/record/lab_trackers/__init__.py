@@ -6,7 +6,17 @@ worlds lie.
 """
 
 from app.features.record.lab_trackers.link import FOOT_LIMIT_M
-from app.features.record.lab_trackers.samples import TrackerSamples, decode_samples
+from app.features.record.lab_trackers.recording import is_kept, next_number, recording_of
+from app.features.record.lab_trackers.samples import ENCODING, TrackerSamples, decode_samples
 from app.features.record.lab_trackers.service import LabTrackers
 
-__all__ = ["FOOT_LIMIT_M", "LabTrackers", "TrackerSamples", "decode_samples"]
+__all__ = [
+    "ENCODING",
+    "FOOT_LIMIT_M",
+    "LabTrackers",
+    "TrackerSamples",
+    "decode_samples",
+    "is_kept",
+    "next_number",
+    "recording_of",
+]

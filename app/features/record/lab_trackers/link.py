@@ -6,7 +6,7 @@ which the least delayed messages map to each other (`SourceClock`).
 """
 
 import threading
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, cast
@@ -39,6 +39,7 @@ _OTHER_CLOCK_S = 1.0
 _KINDS = frozenset({"tracker", "rigid_body", "headset", "controller"})
 """What is somewhere in the room; bones are in their parent."""
 _LATENCIES = 2048
+_MOST_OTHERS = 16
 _HALVES_S = 0.001
 Row = tuple[float, ...]
 """A pose at a time, with the columns of `worker_tasks.ROW`."""
@@ -55,10 +56,14 @@ class _Newest:
 
 @dataclass(frozen=True)
 class Seen:
-    """A tracker as it is shown: on which limb it is worn, and whether it is tracked now."""
+    """A tracker as it is shown: on which limb it is worn, and whether it is tracked now.
+
+    `is_used`: the headset has a goal for the limb, and no other tracker is used for it.
+    """
 
     tracker: str
     limb: str
+    is_used: bool
     tracked: bool
     silent_s: float | None
 
@@ -69,9 +74,9 @@ class TrackerLink:
     def __init__(self, door: str, source: str) -> None:
         self.door = door
         self.source = source
-        self.others: Counter[str] = Counter()
-        """Samples of other senders of the same name, which are not used, by address."""
+        self._others: dict[str, float] = {}
         self._limbs: dict[str, str] = {}
+        self._used: dict[str, str] = {}
         self._address: str | None = None
         self._last_s = float("-inf")
         self._newest: dict[str, _Newest] = {}
@@ -94,16 +99,30 @@ class TrackerLink:
     @property
     def reference(self) -> str | None:
         """Return the name of the tracker on the head; None if no tracker is worn there."""
-        limbs = self._limbs
-        return next((one for one, limb in limbs.items() if limb == REFERENCE), None)
+        return self._used.get(REFERENCE)
 
     def wear(self, limbs: Mapping[str, str]) -> None:
         """Take on which limb each tracker is worn; another one on the head starts anew."""
         with self._lock:
-            before = self.reference
-            self._limbs = dict(limbs)
-            if self.reference != before:
-                self._forget_alignment()
+            self._limbs = dict(sorted(limbs.items()))
+            self._choose(self._last_s)
+
+    def others(self, now_s: float) -> list[str]:
+        """Return the addresses of other senders of the same name that send now; none is used."""
+        with self._lock:
+            return sorted(one for one, at_s in self._others.items() if now_s - at_s <= SILENT_S)
+
+    def doubled(self, now_s: float) -> dict[str, list[str]]:
+        """Return the limbs of the headset's on which several trackers send now, with these.
+
+        The first by name is used, another one only while that sends nothing.
+        """
+        found: dict[str, list[str]] = {}
+        with self._lock:
+            for tracker, limb in self._limbs.items():
+                if limb in GOALS and not self._is_silent(tracker, now_s):
+                    found.setdefault(limb, []).append(tracker)
+        return {limb: trackers for limb, trackers in found.items() if len(trackers) > 1}
 
     def begin_run(self) -> None:
         """Expect the head of a headset that has just connected; its clock may be another one."""
@@ -143,16 +162,24 @@ class TrackerLink:
         with self._lock:
             if sample.address != self._address:
                 if sample.arrival_s - self._last_s <= SILENT_S:
-                    self.others[sample.address] += 1
+                    self._others[sample.address] = sample.arrival_s
+                    if len(self._others) > _MOST_OTHERS:
+                        del self._others[min(self._others, key=self._others.__getitem__)]
                     return False
                 self._address = sample.address
+                self._others.pop(sample.address, None)
             self._last_s = sample.arrival_s
+            worn = [
+                self._completed(pose, sample)
+                for pose in sample.poses
+                if pose.tracker in self._limbs and pose.kind in _KINDS
+            ]
+            self._choose(sample.arrival_s)
             moved = False
-            for pose in sample.poses:
-                limb = self._limbs.get(pose.tracker)
-                if limb is None or pose.kind not in _KINDS:
+            for whole in worn:
+                limb = self._limbs[whole.tracker]
+                if self._used[limb] != whole.tracker:
                     continue
-                whole = self._completed(pose, sample)
                 if limb == REFERENCE:
                     self._keep_reference(whole, sample)
                 elif limb in GOALS:
@@ -170,7 +197,7 @@ class TrackerLink:
                 return None
             found = [
                 (limb, one)
-                for tracker, limb in self._limbs.items()
+                for limb, tracker in self._used.items()
                 if limb in GOALS
                 and limb != REFERENCE
                 and (one := self._newest.get(tracker)) is not None
@@ -200,7 +227,7 @@ class TrackerLink:
         with self._lock:
             arrivals = [
                 self._newest[tracker].arrival_s
-                for tracker, limb in self._limbs.items()
+                for limb, tracker in self._used.items()
                 if limb in GOALS and limb != REFERENCE and tracker in self._newest
             ]
             if arrivals:
@@ -239,8 +266,7 @@ class TrackerLink:
             reference = self.reference
             if reference is None:
                 return "no_reference"
-            newest = self._newest.get(reference)
-            if newest is None or now_s - newest.arrival_s > SILENT_S:
+            if self._is_silent(reference, now_s):
                 return "silent"
             if now_s - self._head_last_s > SILENT_S:
                 return "no_headset"
@@ -264,6 +290,7 @@ class TrackerLink:
                 Seen(
                     tracker,
                     limb,
+                    limb in GOALS and self._used[limb] == tracker,
                     (one := self._newest.get(tracker)) is not None and _is_here(one, now_s),
                     None if one is None else now_s - one.arrival_s,
                 )
@@ -317,6 +344,23 @@ class TrackerLink:
             step.watched.alignment, drift_m_s=np.zeros(3), reference_s=t_s, start_s=t_s, end_s=t_s
         )
         self._step = WatchStep(Watched(alignment, False, t_s, t_s))
+
+    def _choose(self, now_s: float) -> None:
+        """Choose the tracker of each limb: the first by name of those that send."""
+        before, used = self.reference, dict[str, str]()
+        for tracker, limb in self._limbs.items():
+            known = used.get(limb)
+            if known is None or (
+                self._is_silent(known, now_s) and not self._is_silent(tracker, now_s)
+            ):
+                used[limb] = tracker
+        self._used = used
+        if self.reference != before:
+            self._forget_alignment()
+
+    def _is_silent(self, tracker: str, now_s: float) -> bool:
+        newest = self._newest.get(tracker)
+        return newest is None or now_s - newest.arrival_s > SILENT_S
 
     def _forget_alignment(self) -> None:
         self._generation += 1

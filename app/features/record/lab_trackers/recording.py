@@ -65,6 +65,17 @@ def recording_of(db: Session, session: StudySession) -> Recording:
     return "yes" if is_recording(state, step) else "no"
 
 
+def is_kept(recording: Recording, *, was_recording: bool) -> bool:
+    """Return whether what waits since the last look is kept: movement was recorded until now."""
+    return recording == "yes" or (recording == "no" and was_recording)
+
+
+def next_number(db: Session, session_id: str) -> int:
+    """Return the number of a session's next chunk."""
+    newest = select(func.max(TrackerChunk.number)).where(TrackerChunk.session_id == session_id)
+    return (db.scalar(newest) or 0) + 1
+
+
 def store_samples(
     db: Session, session_id: str, samples: list[Sample], *, now: datetime, now_s: float
 ) -> int:
@@ -75,12 +86,9 @@ def store_samples(
     groups: dict[tuple[str, str, str], list[Sample]] = {}
     for one in samples:
         groups.setdefault((one.door, one.source, one.address), []).append(one)
-    newest = select(func.max(TrackerChunk.number)).where(TrackerChunk.session_id == session_id)
-    number = db.scalar(newest) or 0
-    stored = 0
-    for (door, source, address), group in groups.items():
+    first, stored = next_number(db, session_id), 0
+    for number, ((door, source, address), group) in enumerate(groups.items(), start=first):
         trackers, count, data = encode_samples(group)
-        number += 1
         stored += count
         db.add(
             TrackerChunk(

@@ -37,13 +37,20 @@ class SourceChoice(BaseModel):
 
 
 class WornTracker(BaseModel):
-    """A tracker on a limb. `used`: the headset has a goal for it, or it is the one on the head."""
+    """A tracker on a limb. `used`: the headset gets this limb by it, or it is that on the head."""
 
     tracker: str
     limb: str
     used: bool
     tracked: bool
     silent_s: float | None
+
+
+class DoubledLimb(BaseModel):
+    """A limb on which several trackers send; the first of them is used."""
+
+    limb: str
+    trackers: list[str]
 
 
 class LookedAround(BaseModel):
@@ -77,6 +84,7 @@ class SessionTrackers(BaseModel):
     """The trackers that a session's headset uses, and how they lie in its world.
 
     `status` is null if none are chosen. `others`: senders of the same name, which are not used.
+    `doubled`: limbs with several trackers.
     `latency_ms`, `latency_p95_ms`: from a packet's arrival to the headset's socket, null before the
     first one. `stored`: poses on disk since the server started, `waiting_lost`: those that were
     given up because the disk was full for minutes. `refits`, `jumps`: since they were chosen.
@@ -91,6 +99,7 @@ class SessionTrackers(BaseModel):
     alignment: AlignmentView | None = None
     trackers: list[WornTracker] = []
     others: list[str] = []
+    doubled: list[DoubledLimb] = []
     latency_ms: float | None = None
     latency_p95_ms: float | None = None
     stored: int = 0

@@ -20,6 +20,7 @@ from app.features.movement.live import LiveTracking, Sample, limbs_of
 from app.features.record.lab_trackers.link import TrackerLink
 from app.features.record.lab_trackers.recording import (
     WaitingSamples,
+    is_kept,
     recording_of,
     store_change,
     store_samples,
@@ -224,8 +225,8 @@ class LabTrackers(Part):
         with self._context.database.reading() as db:
             recording = recording_of(db, session_by_id(db, one.session_id))
         samples, changes = one.waiting.take(), list(one.changes)
-        is_kept = recording == "yes" or (recording == "no" and one.was_recording)
-        kept = samples if is_kept else []
+        was_recorded = is_kept(recording, was_recording=one.was_recording)
+        kept = samples if was_recorded else []
         one.was_recording = recording == "yes"
         if not kept and not changes:
             return
@@ -234,7 +235,7 @@ class LabTrackers(Part):
                 stored = self._write(db, one, kept, changes)
         except Exception:
             one.waiting.give_back(kept)
-            one.was_recording = one.was_recording or is_kept
+            one.was_recording = one.was_recording or was_recorded
             raise
         one.waiting.stored += stored
         for _ in changes:

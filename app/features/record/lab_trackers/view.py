@@ -9,6 +9,7 @@ from app.features.movement.live import LiveTracking
 from app.features.record.lab_trackers.link import REFERENCE, TrackerLink
 from app.features.record.lab_trackers.schemas import (
     AlignmentView,
+    DoubledLimb,
     LookedAround,
     SessionTrackers,
     SourceChoice,
@@ -54,13 +55,17 @@ def session_trackers(db: Session, context: AppContext, session: StudySession) ->
                 WornTracker(
                     tracker=one.tracker,
                     limb=one.limb,
-                    used=one.limb in GOALS,
+                    used=one.is_used,
                     tracked=one.tracked,
                     silent_s=one.silent_s,
                 )
                 for one in link.trackers(now_s)
             ],
-            "others": sorted(link.others),
+            "others": link.others(now_s),
+            "doubled": [
+                DoubledLimb(limb=limb, trackers=trackers)
+                for limb, trackers in link.doubled(now_s).items()
+            ],
             "latency_ms": _ms(latencies, 50.0),
             "latency_p95_ms": _ms(latencies, 95.0),
             "stored": followed.waiting.stored,

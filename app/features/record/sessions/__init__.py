@@ -46,6 +46,7 @@ from app.features.record.sessions.engine.commands import (
     AskQuestion,
     AskToStop,
     ChangeAvatar,
+    ChooseCompanion,
     ChooseTrackers,
     CloseQuestion,
     CloseStop,
@@ -66,6 +67,7 @@ from app.features.record.sessions.engine.commands import (
     RetractRefusal,
     SubmitForm,
 )
+from app.features.record.sessions.engine.events import Companion
 from app.features.record.sessions.journal import (
     ChainCheck,
     canonical,
@@ -101,10 +103,12 @@ __all__ = [
     "Calibration",
     "ChainCheck",
     "ChangeAvatar",
+    "ChooseCompanion",
     "ChooseTrackers",
     "CloseQuestion",
     "CloseStop",
     "Command",
+    "Companion",
     "CompleteStep",
     "ConsentDesk",
     "ConsentForm",

@@ -30,6 +30,11 @@ def trackers_path(participant_code: str, session_id: str) -> str:
     return f"trackers/{safe_name(participant_code)}_{safe_name(session_id)}.csv"
 
 
+def companions_path(participant_code: str, session_id: str) -> str:
+    """Return the path, in an export, of the poses in which a session showed a companion."""
+    return f"companions/{safe_name(participant_code)}_{safe_name(session_id)}.csv"
+
+
 def road_path(participant_code: str, session_id: str, phase_id: int, part: int) -> str:
     """Return the path, in an export, of the record of a run of the study's road."""
     where = f"{safe_name(participant_code)}_{safe_name(session_id)}_{phase_id}_{part}"

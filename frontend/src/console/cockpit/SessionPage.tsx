@@ -17,6 +17,7 @@ import { TelemetryCard } from "./alarms/TelemetryCard";
 import { AvatarPanel, isChangeable } from "./avatar/AvatarPanel";
 import { BodyPanel, knowsBody } from "./body/BodyPanel";
 import classes from "./Cockpit.module.css";
+import { CompanionPanel } from "./companion/CompanionPanel";
 import { DevicesPanel } from "./devices/DevicesPanel";
 import { Header } from "./Header";
 import { hasMovement, LiveCard } from "./live3d/LiveCard";
@@ -164,6 +165,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       <aside className={classes.side} data-tour="side" aria-label={t("side.label")}>
         {!ended && can("run") && <DevicesPanel session={session} />}
         {!ended && can("run") && <LabTrackersPanel session={session} />}
+        {!ended && can("run") && <CompanionPanel session={session} />}
         <RoadPanel session={session} />
         {!ended && isChangeable(session) && (
           <AvatarPanel

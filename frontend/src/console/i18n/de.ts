@@ -5,6 +5,7 @@ import { actionsDe } from "@shared/session/texts";
 import { pageDe } from "@shared/ui/pageTexts";
 import { alarmsDe } from "../cockpit/alarms/texts";
 import { bodyPanelDe } from "../cockpit/body/texts";
+import { companionDe } from "../cockpit/companion/texts";
 import { sideDe } from "../cockpit/record/texts";
 import { roadDe } from "../cockpit/road/texts";
 import { commandsDe } from "../cockpit/session/texts";
@@ -21,6 +22,7 @@ export const de: Record<keyof typeof en, string> = {
   ...sessionDe,
   ...bodyPanelDe,
   ...labTrackersDe,
+  ...companionDe,
   ...roadDe,
   ...sideDe,
   "app.name": "Reembody",

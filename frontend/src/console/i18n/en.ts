@@ -5,6 +5,7 @@ import { actionsEn } from "@shared/session/texts";
 import { pageEn } from "@shared/ui/pageTexts";
 import { alarmsEn } from "../cockpit/alarms/texts";
 import { bodyPanelEn } from "../cockpit/body/texts";
+import { companionEn } from "../cockpit/companion/texts";
 import { sideEn } from "../cockpit/record/texts";
 import { roadEn } from "../cockpit/road/texts";
 import { commandsEn } from "../cockpit/session/texts";
@@ -20,6 +21,7 @@ export const en = {
   ...sessionEn,
   ...bodyPanelEn,
   ...labTrackersEn,
+  ...companionEn,
   ...roadEn,
   ...sideEn,
   "app.name": "Reembody",

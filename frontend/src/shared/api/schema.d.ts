@@ -1442,6 +1442,30 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/companion": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Session Companion
+         * @description Return whom the participant of a session is shown, and how that goes.
+         */
+        readonly get: operations["get_session_companion_api_sessions__session_id__companion_get"];
+        /**
+         * Put Session Companion
+         * @description Show a performer to the participant as another person, or nobody; it is on the record.
+         */
+        readonly put: operations["put_session_companion_api_sessions__session_id__companion_put"];
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/sessions/{session_id}/consent": {
         readonly parameters: {
             readonly query?: never;
@@ -4551,6 +4575,42 @@ export interface components {
             readonly value?: number | null;
         };
         /**
+         * BodyState
+         * @description Why the body moves or does not; sent when it changes.
+         *
+         *     `refused`: there is no such body; the socket closes.
+         */
+        readonly BodyState: {
+            /** Address */
+            readonly address?: string | null;
+            /**
+             * Missing
+             * @default []
+             */
+            readonly missing: readonly string[];
+            /**
+             * Others
+             * @default []
+             */
+            readonly others: readonly string[];
+            /**
+             * Problems
+             * @default []
+             */
+            readonly problems: readonly string[];
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "refused" | "absent" | "silent" | "gathering" | "unusable" | "ready";
+            /**
+             * Type
+             * @default state
+             * @constant
+             */
+            readonly type: "state";
+        };
+        /**
          * BodyUse
          * @description Where a body is used: avatar configurations, and studies that the reader may see.
          */
@@ -4923,7 +4983,7 @@ export interface components {
              * Code
              * @enum {string}
              */
-            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "road.unneeded" | "road.missing" | "road.process" | "road.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.two_on_limb" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "road.unneeded" | "road.missing" | "road.process" | "road.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
             /**
              * Details
              * @default []
@@ -5140,6 +5200,81 @@ export interface components {
              * @enum {string}
              */
             readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "change_avatar" | "calibrate" | "shift_tracker" | "note";
+        };
+        /**
+         * CompanionChoice
+         * @description Who the participant is shown; null for nobody.
+         */
+        readonly CompanionChoice: {
+            readonly companion: components["schemas"]["CompanionWish"] | null;
+        };
+        /**
+         * CompanionView
+         * @description Who the participant is shown, and where they stand: x and z in metres in the room.
+         */
+        readonly CompanionView: {
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** Heading Rad */
+            readonly heading_rad: number;
+            /** Humanoid */
+            readonly humanoid: string | null;
+            /**
+             * In Tasks
+             * @default false
+             */
+            readonly in_tasks: boolean;
+            /**
+             * Place
+             * @enum {string}
+             */
+            readonly place: "ahead_left" | "ahead_right" | "left" | "right";
+            /** Position M */
+            readonly position_m: readonly [
+                number,
+                number
+            ];
+            /** Skeleton */
+            readonly skeleton: string;
+            /** Source */
+            readonly source: string;
+            /** Stature */
+            readonly stature: string;
+        };
+        /**
+         * CompanionWish
+         * @description Which performer is shown on which body, and where.
+         *
+         *     `stature`: of the body, such as "165cm". `humanoid`: content hash of a body of the lab; null for
+         *     a plain one. `in_tasks`: they are seen during tasks at the boxes, too.
+         */
+        readonly CompanionWish: {
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** Humanoid */
+            readonly humanoid: string | null;
+            /**
+             * In Tasks
+             * @default false
+             */
+            readonly in_tasks: boolean;
+            /**
+             * Place
+             * @enum {string}
+             */
+            readonly place: "ahead_left" | "ahead_right" | "left" | "right";
+            /** Skeleton */
+            readonly skeleton: string;
+            /** Source */
+            readonly source: string;
+            /** Stature */
+            readonly stature: string;
         };
         /**
          * ComparisonAsked
@@ -5822,6 +5957,16 @@ export interface components {
             readonly port: number;
             /** Server */
             readonly server?: string | null;
+        };
+        /**
+         * DoubledLimb
+         * @description A limb on which several trackers send; the first of them is used.
+         */
+        readonly DoubledLimb: {
+            /** Limb */
+            readonly limb: string;
+            /** Trackers */
+            readonly trackers: readonly string[];
         };
         /**
          * Doubt
@@ -8473,7 +8618,7 @@ export interface components {
              * Found
              * @enum {string}
              */
-            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "road.unneeded" | "road.missing" | "road.process" | "road.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
+            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "lab_trackers.unneeded" | "lab_trackers.no_reference" | "lab_trackers.two_on_limb" | "lab_trackers.silent" | "lab_trackers.no_headset" | "lab_trackers.looking" | "lab_trackers.lost" | "lab_trackers.same_name" | "lab_trackers.uncertain" | "lab_trackers.aligned" | "feet.unneeded" | "feet.no_headset" | "feet.unknown" | "feet.waiting" | "feet.inferred" | "feet.lost" | "feet.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "road.unneeded" | "road.missing" | "road.process" | "road.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.incomplete" | "configuration.ok" | "language.missing" | "language.ok";
             /** Reason */
             readonly reason: string;
         };
@@ -8698,6 +8843,23 @@ export interface components {
             readonly length_m: number;
             /** Points M */
             readonly points_m: readonly (readonly number[])[];
+        };
+        /**
+         * PerformerOnOffer
+         * @description A performer who could be shown.
+         */
+        readonly PerformerOnOffer: {
+            /**
+             * Door
+             * @enum {string}
+             */
+            readonly door: "osc" | "natnet" | "json";
+            /** Is Silent */
+            readonly is_silent: boolean;
+            /** Skeleton */
+            readonly skeleton: string;
+            /** Source */
+            readonly source: string;
         };
         /**
          * PerformersView
@@ -10232,6 +10394,41 @@ export interface components {
             readonly study_title: string;
         };
         /**
+         * SessionCompanion
+         * @description The companion of a session.
+         *
+         *     `body`: why their body moves or does not, null if nobody is chosen. `headset`: whether the
+         *     participant sees them now. `latency_ms`, `latency_p95_ms`: from a packet's arrival to the
+         *     headset's socket, null before the first one. `stored`: poses on disk since the server started,
+         *     `waiting_lost`: those that were given up because the disk was full for minutes.
+         */
+        readonly SessionCompanion: {
+            readonly body?: components["schemas"]["BodyState"] | null;
+            /** Choices */
+            readonly choices: readonly components["schemas"]["PerformerOnOffer"][];
+            readonly companion: components["schemas"]["CompanionView"] | null;
+            /**
+             * Headset
+             * @default away
+             * @enum {string}
+             */
+            readonly headset: "away" | "hidden" | "seen";
+            /** Latency Ms */
+            readonly latency_ms?: number | null;
+            /** Latency P95 Ms */
+            readonly latency_p95_ms?: number | null;
+            /**
+             * Stored
+             * @default 0
+             */
+            readonly stored: number;
+            /**
+             * Waiting Lost
+             * @default 0
+             */
+            readonly waiting_lost: number;
+        };
+        /**
          * SessionReceipt
          * @description The data that a session's record contains, and those that it lacks.
          *
@@ -10314,6 +10511,7 @@ export interface components {
          * @description The trackers that a session's headset uses, and how they lie in its world.
          *
          *     `status` is null if none are chosen. `others`: senders of the same name, which are not used.
+         *     `doubled`: limbs with several trackers.
          *     `latency_ms`, `latency_p95_ms`: from a packet's arrival to the headset's socket, null before the
          *     first one. `stored`: poses on disk since the server started, `waiting_lost`: those that were
          *     given up because the disk was full for minutes. `refits`, `jumps`: since they were chosen.
@@ -10324,6 +10522,11 @@ export interface components {
             readonly choices: readonly components["schemas"]["SourceChoice"][];
             /** Door */
             readonly door: ("osc" | "natnet" | "json") | null;
+            /**
+             * Doubled
+             * @default []
+             */
+            readonly doubled: readonly components["schemas"]["DoubledLimb"][];
             /**
              * Jumps
              * @default 0
@@ -12444,7 +12647,7 @@ export interface components {
         };
         /**
          * WornTracker
-         * @description A tracker on a limb. `used`: the headset has a goal for it, or it is the one on the head.
+         * @description A tracker on a limb. `used`: the headset gets this limb by it, or it is that on the head.
          */
         readonly WornTracker: {
             /** Limb */
@@ -15952,6 +16155,90 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["SessionView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_session_companion_api_sessions__session_id__companion_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SessionCompanion"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly put_session_companion_api_sessions__session_id__companion_put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["CompanionChoice"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SessionCompanion"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

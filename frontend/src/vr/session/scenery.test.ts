@@ -1,8 +1,11 @@
 import { describe, expect, it } from "vitest";
+import type { CompanionLink } from "../companion";
+import { BoxRun, type TaskLayout, TaskRules } from "../tasks";
+import { readLayouts } from "../tasks/testing/layouts";
 import type { World, WorldFrame } from "../world";
 import type { View } from "./ports";
 import { WorldScenery } from "./scenery";
-import { FakeSource, STATE } from "./testing";
+import { FakeSource, ORDER, STATE } from "./testing";
 
 /** A world that notes what it is told. */
 function scene() {
@@ -12,7 +15,7 @@ function scene() {
     show: (one) => void shown.push(one),
     wear: (_, statureM) => void staturesM.push(statureM),
   };
-  const scenery = new WorldScenery(world as World, ["hand"]);
+  const scenery = new WorldScenery(world as World, ["hand"], () => null);
   const state = { ...STATE, participant: { ...STATE.participant, stature_m: 1.62 } };
   const show = (place: View["place"], step: string | null, stepKind = "materialise") => {
     const prompt = step === null ? null : { step, number: 1, total: 6, problem: null };
@@ -49,5 +52,63 @@ describe("the transparent figure", () => {
     const { show } = scene();
     expect(show("standby", null, "height")).toBe(true);
     expect(show("standby", null, "instructions")).toBe(false);
+  });
+});
+
+describe("the companion", () => {
+  const POSE = [1, 2, 3];
+
+  /** What is shown of a companion in a moment, and whether they count as seen. */
+  function looking(isInTasks: boolean) {
+    const shown: WorldFrame[] = [];
+    const seen: boolean[] = [];
+    const world = { show: (one: WorldFrame) => void shown.push(one), wear: () => undefined };
+    const look = (wants: boolean) => {
+      seen.push(wants);
+      return wants ? POSE : null;
+    };
+    const companion = { isInTasks, look } as unknown as CompanionLink;
+    const scenery = new WorldScenery(world as unknown as World, ["hand"], () => companion);
+    return (moment: Partial<View> = {}) => {
+      scenery.show({
+        timeS: 1,
+        place: "acting",
+        state: STATE,
+        tracked: new FakeSource().read(1),
+        bodies: {} as View["bodies"],
+        run: null,
+        street: null,
+        isFrozen: false,
+        calibration: null,
+        cover: "none",
+        ...moment,
+      });
+      return [shown.at(-1)?.companion ?? null, seen.at(-1)];
+    };
+  }
+  const unseen = [null, false];
+
+  it("is there between tasks, and not in any other place of the visit", () => {
+    const look = looking(false);
+    expect(look()).toEqual([POSE, true]);
+    expect(look({ place: "standby" })).toEqual(unseen);
+    expect(look({ bodies: null })).toEqual(unseen);
+    expect(look({ street: {} as View["street"] })).toEqual(unseen);
+    expect(look({ calibration: {} as View["calibration"] })).toEqual(unseen);
+  });
+
+  it("is there in a task only if the experimenter wants it so", () => {
+    const layout = readLayouts().get("hand") as TaskLayout;
+    const run = new BoxRun({ ...ORDER, limb: "hand" }, new TaskRules(layout, "right"), [], 0);
+    expect(looking(false)({ run })).toEqual(unseen);
+    expect(looking(true)({ run })).toEqual([POSE, true]);
+  });
+
+  it("stays until the curtain has closed, and is not seen meanwhile", () => {
+    const look = looking(false);
+    look();
+    expect(look({ cover: "fade" })).toEqual([POSE, false]);
+    expect(look({ cover: "cut" })).toEqual(unseen);
+    expect(look({ cover: "fade" })).toEqual(unseen);
   });
 });

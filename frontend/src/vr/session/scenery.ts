@@ -1,23 +1,29 @@
 /** What the participant sees in each place of the visit: the world, told what is to be seen. */
+
+import type { CompanionLink } from "../companion";
 import type { Limb, TimedRun } from "../tasks";
 import { BoxRun, currentGoal, displayedNumbers, RoadRun, surfaceColours } from "../tasks";
 import type { TrackedFrame, TrackingDevice } from "../tracking/tracked";
 import type { Device, TaskShown, Visible, World } from "../world";
 import type { Scenery, View } from "./ports";
 
+type Companion = Pick<CompanionLink, "isInTasks" | "look">;
 const NO_SETUPS: readonly Limb[] = [];
 const NO_DEVICES: readonly Device[] = [];
 
 export class WorldScenery implements Scenery {
   readonly #world: World;
   readonly #limbs: readonly Limb[];
+  readonly #companion: () => Companion | null;
+  #seen: ArrayLike<number> | null = null;
   #task: TaskShown | null = null;
   #shownState: unknown = null;
 
-  /** `limbs`: those that the study has tasks for. */
-  constructor(world: World, limbs: readonly Limb[]) {
+  /** `limbs`: those that the study has tasks for; `companion`: null where there is no socket. */
+  constructor(world: World, limbs: readonly Limb[], companion: () => Companion | null) {
     this.#world = world;
     this.#limbs = limbs;
+    this.#companion = companion;
   }
 
   show(view: View): void {
@@ -37,6 +43,7 @@ export class WorldScenery implements Scenery {
       devices: place === "acting" ? NO_DEVICES : devicesOf(tracked),
       task: isTask ? this.#taskOf(run) : null,
       street: view.street,
+      companion: this.#companionIn(view),
       remainingS: run === null ? null : remainingS(run, timeS),
       completed: isTask ? run.completed : null,
       isFrozen: view.isFrozen,
@@ -63,6 +70,22 @@ export class WorldScenery implements Scenery {
       devices: !isActing,
       setups: isActing ? this.#setups(run) : NO_SETUPS,
     };
+  }
+
+  /**
+   * Where the participant looks at their own body and nothing is asked of it: between tasks and in
+   * free movement. A task looks as it does for everybody else, unless the experimenter wants it
+   * otherwise; on the road there is another world.
+   */
+  #companionIn({ place, run, bodies, street, calibration, cover }: View): ArrayLike<number> | null {
+    const companion = this.#companion();
+    if (companion === null) return null;
+    const isInRoom = place === "acting" && bodies !== null && street === null;
+    const isFree = isInRoom && calibration === null && cover === "none";
+    const pose = companion.look(isFree && (!(run instanceof BoxRun) || companion.isInTasks));
+    // The curtain that closes hides whoever was there.
+    this.#seen = pose ?? (cover === "fade" && isInRoom ? this.#seen : null);
+    return this.#seen;
   }
 
   /** The boxes of the task; both in free movement, so that people get to know them. */

@@ -26,6 +26,7 @@ import {
 import { armStretchOf } from "../tracking/skeleton";
 import { paletteOf, STANDARD, World } from "../world";
 import { loadModel, requestAvatars } from "./avatars";
+import { SessionCompanion } from "./companion";
 import { Headset } from "./headset";
 import { drawIn, FRAME_RATE_HZ, requestImmersive } from "./immersive";
 import type { Granted, Inspection } from "./inspection";
@@ -33,6 +34,7 @@ import { Pace } from "./pace";
 import { deskOf } from "./panels/desk";
 import { VisitPanels } from "./panels/visitPanels";
 import { WorldScenery } from "./scenery";
+import { socketUrl } from "./sockets";
 
 export interface VrParts {
   readonly telemetry: TelemetryClient;
@@ -58,6 +60,7 @@ export class Vr {
   readonly #panels: VisitPanels;
   readonly #tracking: WebXrTracking;
   readonly #lab = new ServerTrackers();
+  readonly #companion: SessionCompanion;
   #labLink: TrackerLink | null = null;
   #bodies: BodiesInWorker | null = null;
   #screen: OnScreen | null = null;
@@ -84,6 +87,7 @@ export class Vr {
       this.#camera.updateProjectionMatrix();
     }
     this.#world = new World({ layouts, palette, language, road });
+    this.#companion = new SessionCompanion({ world: this.#world, token: parts.token, onFailure });
     this.#tracking = new WebXrTracking(
       {
         onSpace: (space) => {
@@ -115,7 +119,7 @@ export class Vr {
       keep: localStorage,
       onSquare: (worldFromSquare) => this.#tracking.moveSquare(worldFromSquare),
       openRoad: (phaseId, activeS, place) => openRoad(parts.token, { phaseId, activeS, place }),
-      scenery: new WorldScenery(this.#world, [...layouts.keys()]),
+      scenery: new WorldScenery(this.#world, [...layouts.keys()], () => this.#companion.link),
       prepareBodies: (measures, named) => this.#prepareBodies(measures, named),
       onBodyWorn: (body) => this.#wear(body),
       withFingers,
@@ -147,6 +151,7 @@ export class Vr {
     const space = this.#renderer.xr.getReferenceSpace();
     if (space !== null) this.#tracking.begin(session, space);
     this.#labLink ??= openTrackers(this.#parts.token, this.#lab);
+    this.#companion.open();
     this.#boundary = await Boundary.of(session);
     this.#guardedFrame = 0;
   }
@@ -161,6 +166,7 @@ export class Vr {
     const screen = { host, source: new Watched(source), pace: new Pace(), onPace };
     this.#screen = screen;
     this.#headset.trackBy(screen.source);
+    this.#companion.open();
     host.append(this.#renderer.domElement);
     this.#renderer.xr.enabled = false;
     this.#renderer.setAnimationLoop((timeMs) => this.#frameOnScreen(timeMs, screen));
@@ -170,6 +176,7 @@ export class Vr {
   dispose(): void {
     void this.#session?.end().catch(() => undefined);
     this.#labLink?.close();
+    this.#companion.close();
     this.#headset.dispose();
     this.#panels.dispose();
     this.#world.dispose();
@@ -349,16 +356,13 @@ export class Vr {
 
 /** Open the socket over which the lab's trackers come to this headset. */
 function openTrackers(token: string, trackers: ServerTrackers): TrackerLink {
-  const { protocol, host } = window.location;
-  const url = `${protocol === "https:" ? "wss" : "ws"}://${host}/api/vr/trackers`;
+  const url = socketUrl("/api/vr/trackers");
   return new TrackerLink({ url, token, trackers, clock: () => performance.now() / 1000 });
 }
 
 /** Open the socket over which the study's road comes to this headset. */
 function openRoad(token: string, phase: Omit<RoadLinkOptions, "url" | "token">): RoadLink {
-  const { protocol, host } = window.location;
-  const url = `${protocol === "https:" ? "wss" : "ws"}://${host}/api/vr/road`;
-  return new RoadLink({ ...phase, url, token });
+  return new RoadLink({ ...phase, url: socketUrl("/api/vr/road"), token });
 }
 
 /** The study on a screen: where it is drawn, and what moves the participant. */

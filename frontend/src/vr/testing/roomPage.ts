@@ -68,6 +68,8 @@ interface Moment {
   /** A question that a ray points at, or with a stop on its way; or the pause room. */
   readonly panel?: "question" | "stopping" | "pause" | null;
   readonly isBoundarySmall?: boolean;
+  /** Another person of the same body stands there in the same pose; metres. */
+  readonly companionAtM?: Vector;
   /** Look from here instead of through the body's eyes. */
   readonly from?: { readonly positionM: Vector; readonly rotation: Quaternion };
 }
@@ -102,8 +104,10 @@ async function open(options: Options): Promise<void> {
   world = made;
   if (body !== null) {
     const bytes = Uint8Array.from(atob(body.file), (one) => one.charCodeAt(0));
-    made.addBody(null, await readBody(bytes.buffer, body.binding));
-  }
+    const model = await readBody(bytes.buffer, body.binding);
+    made.addBody(null, model);
+    made.companion.be(statureM, model);
+  } else made.companion.be(statureM, null);
   made.wear(null, statureM);
   if (mirror === "reflector") addReflector(made);
 
@@ -139,6 +143,10 @@ async function open(options: Options): Promise<void> {
       task: task === undefined ? null : shownTask(task, layouts),
       remainingS: moment.remainingS ?? null,
       completed: moment.completed ?? null,
+      companion:
+        moment.companionAtM === undefined
+          ? null
+          : poseValues({ ...moment, movedM: moment.companionAtM }, hips),
       isFrozen: moment.isFrozen ?? false,
       isCurtainDrawn: moment.isCurtainDrawn ?? false,
     });

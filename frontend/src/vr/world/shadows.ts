@@ -1,5 +1,5 @@
 /**
- * Soft shadows below hips and feet, which show where a body stands; with their reflections in one
+ * Soft shadows below hips and feet, which show where bodies stand; with their reflections in one
  * draw call. This module imports three.js.
  */
 import {
@@ -28,6 +28,8 @@ const CASTS: readonly Cast[] = [
 ];
 /** Above the floor, and above the start square. */
 const HEIGHT_M = 0.007;
+/** The participant's, and a companion's. */
+const MOST_BODIES = 2;
 
 export class Shadows {
   readonly mesh: InstancedMesh<PlaneGeometry, MeshBasicMaterial>;
@@ -46,26 +48,21 @@ export class Shadows {
       polygonOffsetUnits: -1,
     });
     const plane = new PlaneGeometry(2, 2).rotateX(-Math.PI / 2);
-    this.mesh = new InstancedMesh(plane, material, CASTS.length * (mirror === null ? 1 : 2));
+    const most = MOST_BODIES * CASTS.length * (mirror === null ? 1 : 2);
+    this.mesh = new InstancedMesh(plane, material, most);
     this.mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     this.mesh.frustumCulled = false;
     this.mesh.visible = false;
   }
 
-  /** Below this body, or below nobody. */
-  show(body: Body3d | null): void {
-    this.mesh.visible = body?.group.visible === true;
-    if (body === null) return;
-    const { places } = body.parts;
-    for (let at = 0; at < CASTS.length; at++) {
-      const { part, radiusM, untilM } = CASTS[at] ?? NO_CAST;
-      const joint = 3 * body.partNames.indexOf(part);
-      const [x = 0, y = 0, z = 0] = [places[joint], places[joint + 1], places[joint + 2]];
-      const size = joint < 0 ? 0 : radiusM * Math.max(0, 1 - y / untilM);
-      this.#set(at, x, z, size);
-      if (this.#mirror === null) continue;
-      this.#set(CASTS.length + at, x, 2 * this.#mirror.planeZM - z, size);
+  /** Below these bodies, of which those count that are seen. */
+  show(bodies: readonly (Body3d | null)[]): void {
+    let count = 0;
+    for (const body of bodies) {
+      if (body?.group.visible === true) count = this.#cast(body, count);
     }
+    this.mesh.count = count;
+    this.mesh.visible = count > 0;
     this.mesh.instanceMatrix.needsUpdate = true;
   }
 
@@ -76,12 +73,24 @@ export class Shadows {
     this.mesh.dispose();
   }
 
+  /** Set a body's shadows from a number on; returns the number after its last one. */
+  #cast({ parts: { places }, partNames }: Body3d, from: number): number {
+    let at = from;
+    for (const { part, radiusM, untilM } of CASTS) {
+      const joint = 3 * partNames.indexOf(part);
+      const [x = 0, y = 0, z = 0] = [places[joint], places[joint + 1], places[joint + 2]];
+      const size = joint < 0 ? 0 : radiusM * Math.max(0, 1 - y / untilM);
+      this.#set(at++, x, z, size);
+      if (this.#mirror !== null) this.#set(at++, x, 2 * this.#mirror.planeZM - z, size);
+    }
+    return at;
+  }
+
   #set(at: number, x: number, z: number, size: number): void {
     this.#matrix.makeScale(size, 1, size).setPosition(x, HEIGHT_M, z);
     this.mesh.setMatrixAt(at, this.#matrix);
   }
 }
-const NO_CAST: Cast = { part: "", radiusM: 0, untilM: 1 };
 
 function blot(): CanvasTexture {
   const canvas = document.createElement("canvas");

@@ -26,6 +26,7 @@ import {
   sizeOf,
   wayAcrossM,
 } from "./boundary";
+import { Companion } from "./companion";
 import { Curtain, PANELS_ORDER } from "./curtain";
 import { type Device, Devices } from "./devices";
 import { makeLights } from "./lights";
@@ -86,6 +87,8 @@ export interface WorldFrame {
   readonly completed: number | null;
   /** The street instead of the room; null: the room. */
   readonly street?: StreetShown | null;
+  /** The pose of the other person in the room; null: not shown. */
+  readonly companion?: ArrayLike<number> | null;
   /** Bodies stay as they are; the view never does. */
   readonly isFrozen: boolean;
   /** Hide the room within 200 ms, or show it again. Panels stay visible. */
@@ -103,6 +106,8 @@ export class World {
   readonly panels = new Group();
   readonly mirror: Mirror;
   readonly sounds = new Sounds();
+  /** The other person in the room, nobody at first. */
+  readonly companion: Companion;
   readonly #reflecting: Mirror | null;
   readonly #setups: Setups;
   readonly #board: Board;
@@ -137,6 +142,7 @@ export class World {
     this.#setups = new Setups(layouts, palette, this.#reflecting);
     this.#board = new Board(this.mirror, boardWords(language));
     this.#shadows = new Shadows(this.#reflecting);
+    this.companion = new Companion(this.#reflecting);
     this.#devices = new Devices(this.#reflecting);
     this.#line = boundaryLine(this.#area);
     this.#line.visible = false;
@@ -146,6 +152,7 @@ export class World {
     this.scene.add(
       this.#board.mesh,
       this.#devices.group,
+      this.companion.group,
       this.#line,
       this.#curtain.mesh,
       this.panels,
@@ -252,6 +259,7 @@ export class World {
     this.#street?.dispose();
     this.#board.dispose();
     this.#shadows.dispose();
+    this.companion.dispose();
     this.#devices.dispose();
     this.#curtain.dispose();
     this.#line.geometry.dispose();
@@ -268,21 +276,22 @@ export class World {
     if (isOpen) return;
     if (this.#street !== null) this.#street.group.visible = false;
     for (const body of this.#bodies.values()) body.group.visible = false;
-    this.#shadows.show(null);
+    this.companion.show(null);
+    this.#shadows.show([]);
     this.#devices.show(NO_DEVICES);
     this.#setups.mesh.visible = false;
     this.#board.mesh.visible = false;
   }
 
-  #showBodies({ bodies, visible, isFrozen, eyes }: WorldFrame): void {
+  #showBodies({ bodies, visible, isFrozen, eyes, companion = null }: WorldFrame): void {
     const isBoth = visible.local && visible.remote;
     this.#pose("remote", visible.remote, bodies?.remote, bodies?.remoteFingers, isFrozen);
     this.#pose("local", visible.local && !isBoth, bodies?.local, bodies?.localFingers, isFrozen);
     this.#pose("beside", isBoth, bodies?.local, bodies?.localFingers, isFrozen);
     this.#showFigure(visible.figure, eyes);
     const standing = visible.remote ? "remote" : visible.local ? "local" : "figure";
-    const body = this.#bodies.get(standing) ?? null;
-    this.#shadows.show(body?.group.visible === true ? body : null);
+    const other = this.companion.show(companion);
+    this.#shadows.show([this.#bodies.get(standing) ?? null, other]);
   }
 
   #pose(

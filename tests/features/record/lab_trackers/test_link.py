@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from app.adapters.live import Pose
 from app.features.movement.live import Sample
@@ -170,9 +171,52 @@ def test_a_second_sender_of_the_same_name_is_named_and_not_used() -> None:
     foot = tracker("left", np.zeros(3), np.array((1.0, 0.0, 0.0, 0.0)))
     other = "127.0.0.1:6000"
     assert not link.take(sample(at + 0.1, foot, address=other))
-    assert (link.address, dict(link.others)) == (HERE, {other: 1})
+    assert (link.address, link.others(SERVER_S + at + 0.2)) == (HERE, [other])
+    assert link.others(SERVER_S + at + 0.2 + SILENT_S) == []
     assert link.take(sample(at + 0.2 + SILENT_S, foot, address=other))
-    assert link.address == other
+    assert (link.address, link.others(SERVER_S + at + 0.2 + SILENT_S)) == (other, [])
+
+
+def test_of_two_trackers_on_a_limb_the_first_by_name_is_used_while_it_sends() -> None:
+    """Whatever their order in packets; the other one follows when the first was silent."""
+    link, _, hat = aligned_link()
+    link.wear({**WORN, "spare": "LeftLowerLeg"})
+    at = float(hat.times_s[-1])
+    upright = np.array((1.0, 0.0, 0.0, 0.0))
+    first = tracker("left", np.zeros(3), upright)
+    spare = tracker("spare", np.array((0.0, 0.0, 1.0)), upright)
+
+    def place(at_s: float, *poses: Pose) -> tuple[float, ...]:
+        link.take(sample(at_s, *poses))
+        found = link.places(SERVER_S + at_s)
+        assert found is not None
+        return found.places["LeftLowerLeg"]
+
+    alone = place(at + 0.01, first)
+    assert link.doubled(SERVER_S + at + 0.01) == {}
+    assert place(at + 0.02, spare, first) == pytest.approx(alone, abs=1e-4)
+    assert place(at + 0.03, first, spare) == pytest.approx(alone, abs=1e-4)
+    assert link.doubled(SERVER_S + at + 0.03) == {"LeftLowerLeg": ["left", "spare"]}
+    seen = {one.tracker: one.is_used for one in link.trackers(SERVER_S + at + 0.03)}
+    assert seen == {"hat": True, "left": True, "spare": False, "chest": False}
+    later = at + 0.04 + SILENT_S
+    link.take(sample(later, tracker("hat", hat.positions_m[-1], hat.rotations[-1])))
+    assert np.linalg.norm(np.subtract(place(later, spare)[:3], alone[:3])) > 0.9
+    assert link.doubled(SERVER_S + later) == {}
+    assert place(later + 0.01, spare, first)[:3] == pytest.approx(alone[:3], abs=0.01)
+
+
+def test_of_two_trackers_on_the_head_the_first_by_name_is_aligned() -> None:
+    """A second one there changes nothing; only if the first falls silent, all starts anew."""
+    link, _, hat = aligned_link()
+    at = float(hat.times_s[-1])
+    link.wear({**WORN, "visor": "Head"})
+    visor = tracker("visor", hat.positions_m[-1], hat.rotations[-1])
+    link.take(sample(at + 0.01, visor, tracker("hat", hat.positions_m[-1], hat.rotations[-1])))
+    assert (link.reference, link.status(SERVER_S + at + 0.02)) == ("hat", "aligned")
+    link.take(sample(at + 0.05 + SILENT_S, visor))
+    assert link.reference == "visor"
+    assert link.step() is None
 
 
 def test_halves_of_a_pose_make_a_whole_one() -> None:

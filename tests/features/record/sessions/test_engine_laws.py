@@ -25,6 +25,7 @@ from app.features.record.sessions.engine import (
     state_to_json,
 )
 from app.features.record.sessions.engine import commands as c
+from app.features.record.sessions.engine.events import Companion
 from app.features.record.sessions.engine.state import PhaseStatus
 from tests.features.record.sessions.engine_run import PLAN, REPORTS, WORDS, Run
 from tests.support.repetitions import usually
@@ -235,6 +236,11 @@ def events(kind: type[Event]) -> st.SearchStrategy[Event]:
         "float": st.floats(0, 1e6),
         "bool": st.booleans(),
         "tuple[float, float, float]": st.tuples(*[st.floats(-1, 1)] * 3),
+        f"{Companion.__module__}.Companion": st.builds(
+            Companion,
+            position_m=st.tuples(*[st.floats(-9, 9)] * 2),
+            heading_rad=st.floats(-4, 4),
+        ),
         "dict[str, typing.Any]": st.dictionaries(st.text(), st.text() | st.booleans()),
     }
     strategies = {}

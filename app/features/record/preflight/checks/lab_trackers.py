@@ -1,5 +1,7 @@
 """Check that the lab's trackers, if the session uses any, reach the headset and are aligned."""
 
+from itertools import chain
+
 from app.features.record.lab_trackers import FOOT_LIMIT_M, LabTrackers
 from app.features.record.preflight.check import Finding, Found, Situation, StateCheck
 from app.texts import Words
@@ -13,12 +15,15 @@ def _lab_trackers(situation: Situation) -> Found:
         return Found("unneeded")
     link = followed.link
     name = (link.source,)
-    status = link.status(situation.context.clock.monotonic_ns() / 1e9)
+    now_s = situation.context.clock.monotonic_ns() / 1e9
+    if doubled := link.doubled(now_s):
+        return Found("two_on_limb", details=tuple(sorted(chain(*doubled.values()))))
+    status = link.status(now_s)
     step = link.step()
     if status != "aligned" or step is None or step.watched.alignment is None:
         return Found(status, details=name)
-    if link.others:
-        return Found("same_name", details=(*name, *sorted(link.others)))
+    if others := link.others(now_s):
+        return Found("same_name", details=(*name, *others))
     foot_m = step.watched.alignment.quality.uncertainty_m
     return Found(
         "uncertain" if foot_m > FOOT_LIMIT_M else "aligned",
@@ -47,6 +52,18 @@ LAB_TRACKERS = StateCheck(
                 en="Fix a tracker to the headset, and give it the limb Head on the page Trackers.",
                 de="Befestigen Sie einen Tracker am Headset und geben Sie ihm auf der Seite "
                 "Tracker den Körperteil Kopf.",
+            ),
+        ),
+        Finding(
+            "two_on_limb",
+            "fail",
+            Words(
+                en="Two trackers are on one limb; the first by name is used",
+                de="Zwei Tracker sind an einem Körperteil; der erste nach dem Namen gilt",
+            ),
+            remedy=Words(
+                en="Give each its own limb, or none, on the page Trackers.",
+                de="Geben Sie auf der Seite Tracker jedem seinen eigenen Körperteil oder keinen.",
             ),
         ),
         Finding(
@@ -92,10 +109,8 @@ LAB_TRACKERS = StateCheck(
                 de="Zwei Sender haben denselben Namen; der erste wird verwendet",
             ),
             remedy=Words(
-                en="Switch the other one off, or give it another name; then choose the source "
-                "anew.",
-                de="Schalten Sie den anderen aus oder geben Sie ihm einen anderen Namen; wählen "
-                "Sie dann die Quelle neu.",
+                en="Switch the other one off, or give it another name.",
+                de="Schalten Sie den anderen aus oder geben Sie ihm einen anderen Namen.",
             ),
         ),
         Finding(

@@ -7,6 +7,7 @@ the session starts, too, so that they are there when the participant comes.
 """
 
 from dataclasses import asdict
+from typing import TypedDict
 
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
@@ -46,6 +47,8 @@ def decide_participant(state: SessionState, command: c.Command) -> list[e.Event]
             return _report(state, command)
         case c.ChooseTrackers():
             return _choose_trackers(state, command)
+        case c.ChooseCompanion():
+            return _choose_companion(state, command)
         case c.ReportAlignment():
             is_running = state.status in (SessionStatus.PLANNED, SessionStatus.ACTIVE)
             # It may have been computed while the trackers were changed or the session ended.
@@ -75,26 +78,41 @@ def pause_running(state: SessionState) -> list[e.Event]:
 
 def _choose_trackers(state: SessionState, command: c.ChooseTrackers) -> list[e.Event]:
     """Return the event of a choice of trackers; none if they are those already in use."""
+    _require_open(state, "It has ended, so its headset uses no trackers any more.")
+    before = None if state.trackers is None else (state.trackers.door, state.trackers.source)
+    wish = None if command.door is None else (command.door, command.source)
+    if before == wish:
+        return []
+    return [e.TrackersChosen(door=command.door, source=command.source, **_at(state))]
+
+
+def _choose_companion(state: SessionState, command: c.ChooseCompanion) -> list[e.Event]:
+    """Return the event of a choice of whom the participant sees; none if it changes nothing."""
+    _require_open(state, "It has ended, so its participant sees nobody any more.")
+    if state.companion == command.companion:
+        return []
+    return [e.CompanionChosen(companion=command.companion, **_at(state))]
+
+
+def _require_open(state: SessionState, remedy: str) -> None:
     if state.status not in (SessionStatus.PLANNED, SessionStatus.ACTIVE):
         raise Refused(
             f"the session is {state.status}",
             value=state.status,
             valid=[SessionStatus.PLANNED, SessionStatus.ACTIVE],
-            remedy="It has ended, so its headset uses no trackers any more.",
+            remedy=remedy,
         )
-    before = None if state.trackers is None else (state.trackers.door, state.trackers.source)
-    wish = None if command.door is None else (command.door, command.source)
-    if before == wish:
-        return []
+
+
+class _At(TypedDict):
+    phase_id: int | None
+    deviation: bool
+
+
+def _at(state: SessionState) -> _At:
+    """Return the phase in which something is changed that should not change in one."""
     phase = state.phase
-    return [
-        e.TrackersChosen(
-            door=command.door,
-            source=command.source,
-            phase_id=None if phase is None else phase.phase_id,
-            deviation=phase is not None,
-        )
-    ]
+    return {"phase_id": None if phase is None else phase.phase_id, "deviation": phase is not None}
 
 
 def _report(state: SessionState, command: c.ReportCalibration) -> list[e.Event]:

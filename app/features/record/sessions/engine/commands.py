@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from app.features.record.sessions.engine.events import Companion
+
 
 @dataclass(frozen=True)
 class ContentRef:
@@ -238,6 +240,13 @@ class ChooseTrackers(Command):
 
     door: str | None
     source: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChooseCompanion(Command):
+    """Show a performer to the participant as another person; None: nobody any more."""
+
+    companion: Companion | None
 
 
 @dataclass(frozen=True, kw_only=True)

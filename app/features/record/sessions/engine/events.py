@@ -326,6 +326,44 @@ class TrackersChosen(Event):
     deviation: bool = False
 
 
+@dataclass(frozen=True)
+class Companion:
+    """A performer who is shown to the participant as another person in the virtual room.
+
+    Attributes:
+        door, source, skeleton: the performer, as the page of trackers names them.
+        stature: of the body that is shown, such as "165cm".
+        humanoid: content hash of the body's model; None for a plain body of capsules.
+        place: where they stand, such as "ahead_left".
+        position_m: x and z of that place, in the participant's room.
+        heading_rad: where they face, about the vertical axis: 0 towards -z, positive to the left.
+        in_tasks: whether they are also seen while the participant does a task at the boxes.
+    """
+
+    door: str
+    source: str
+    skeleton: str
+    stature: str
+    humanoid: str | None
+    place: str
+    position_m: tuple[float, float]
+    heading_rad: float
+    in_tasks: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompanionChosen(Event):
+    """Somebody chose a performer whom the participant sees as another person; None for nobody.
+
+    `deviation`: a phase was in progress.
+    """
+
+    type = "companion_chosen"
+    companion: Companion | None
+    phase_id: int | None = None
+    deviation: bool = False
+
+
 @dataclass(frozen=True, kw_only=True)
 class TrackersAligned(Event):
     """How the trackers lie in the headset's world has become known, or no longer holds.
@@ -501,6 +539,7 @@ EVENT_TYPES: dict[str, type[Event]] = {
         CalibrationReported,
         TrackersChosen,
         TrackersAligned,
+        CompanionChosen,
         StopAsked,
         StopClosed,
         BlindingLifted,

@@ -58,6 +58,7 @@ def _applied(state: SessionState, event: e.Event) -> SessionState:
                 calibration=None,
                 stop_asked=False,
                 trackers=None,
+                companion=None,
             )
         case _ if isinstance(event, MARKS):
             return _marked(state, event)
@@ -78,6 +79,7 @@ MARKS = (
     e.TrackerShifted,
     e.CalibrationReported,
     e.TrackersChosen,
+    e.CompanionChosen,
     e.StopAsked,
     e.StopClosed,
     e.DataErased,
@@ -102,16 +104,21 @@ def _marked(state: SessionState, event: e.Event) -> SessionState:
             return replace(state, avatar_changes=_avatar_changed(state, event))
         case e.CalibrationRequested() | e.TrackerShifted() | e.CalibrationReported():
             return replace(state, calibration=_calibration(state, event))
-        case e.TrackersChosen(door=door, source=source):
-            return replace(state, trackers=_chosen(door, source))
+        case e.TrackersChosen() | e.CompanionChosen():
+            return _chosen(state, event)
         case e.StopAsked() | e.StopClosed():
             return _stop_wish(state, is_open=isinstance(event, e.StopAsked))
         case _:
             return replace(state, erased=True)
 
 
-def _chosen(door: str | None, source: str | None) -> TrackersState | None:
-    return None if door is None or source is None else TrackersState(door, source)
+def _chosen(state: SessionState, event: e.TrackersChosen | e.CompanionChosen) -> SessionState:
+    """Take what somebody chose of the doors: the headset's trackers, or whom it shows."""
+    if isinstance(event, e.CompanionChosen):
+        return replace(state, companion=event.companion)
+    door, source = event.door, event.source
+    trackers = None if door is None or source is None else TrackersState(door, source)
+    return replace(state, trackers=trackers)
 
 
 def _stop_wish(state: SessionState, *, is_open: bool) -> SessionState:

@@ -6,6 +6,8 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
+from app.features.record.sessions.engine.events import Companion
+
 
 class SessionStatus(StrEnum):
     """The status of a session."""
@@ -131,7 +133,8 @@ class SessionState:
     data were erased, and nothing more can be added. `avatar_changes`: None until the running avatar
     is changed, and after the session has ended; `calibration` likewise until something is ordered.
     `stop_asked`: the participant wants to stop, and the experimenter has not come yet. `trackers`:
-    None while the headset uses none of the lab's, and after the session has ended.
+    None while the headset uses none of the lab's, and after the session has ended; `companion`
+    likewise while the participant is shown nobody else.
     """
 
     version: int
@@ -149,6 +152,7 @@ class SessionState:
     calibration: CalibrationState | None = None
     stop_asked: bool = False
     trackers: TrackersState | None = None
+    companion: Companion | None = None
 
     @property
     def next_phase_id(self) -> int:

@@ -13,9 +13,11 @@ from app.features.results.analysis.codebook.book import (
     data_dictionary,
 )
 from app.features.results.analysis.codebook.column import Column, ColumnType
+from app.features.results.analysis.codebook.companions import COMPANION_POSE
 
 __all__ = [
     "CODEBOOK",
+    "COMPANION_POSE",
     "TABLES",
     "Column",
     "ColumnType",

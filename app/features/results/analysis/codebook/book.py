@@ -6,6 +6,7 @@ from dataclasses import asdict, replace
 import pandas as pd
 
 from app.features.results.analysis.codebook.column import Column, Describe
+from app.features.results.analysis.codebook.companions import COMPANION_FRAMES
 from app.features.results.analysis.codebook.equipment import (
     CALIBRATIONS,
     CLOCK_MAPPING,
@@ -59,6 +60,7 @@ TABLES: dict[str, str] = {
     "samples": "One file per session, one row per frame: target and actual body side by side.",
     "fingers": "One file per session that recorded fingers; one row per frame, as in samples.",
     "trackers": "One file per session that used the lab's trackers; one row per pose, as it came.",
+    "companions": "One file per session that showed a companion; one row per pose as it was shown.",
 }
 """The description of each table's rows, in the order of the export."""
 
@@ -88,8 +90,8 @@ CODEBOOK: tuple[Column, ...] = (
     *HEADSET_TESTS,
     _B.text(
         "table",
-        "The file that the column is in; samples, fingers and trackers stand for all files in "
-        "these folders.",
+        "The file that the column is in; samples, fingers, trackers and companions stand for all "
+        "files in these folders.",
     ),
     _B.text("column", "Name of the column."),
     _B.text("meaning", "What it holds."),
@@ -99,6 +101,7 @@ CODEBOOK: tuple[Column, ...] = (
     *SAMPLES,
     *FINGER_SAMPLES,
     *TRACKER_SAMPLES,
+    *COMPANION_FRAMES,
 )
 PREFACE = """\
 # Data dictionary
@@ -112,6 +115,7 @@ tests are never summarised together: every table of data has the column `simulat
 _PER_PART = {
     "samples": (JOINT_NAMES, "Each of the 22 joints", "Joint"),
     "fingers": (FINGER_PARTS, "Each of the 30 finger parts", "Part"),
+    "companions": (JOINT_NAMES, "Each of the 22 joints", "Joint"),
 }
 _BY_TABLE = {
     table: tuple(column for column in CODEBOOK if column.table == table) for table in TABLES
@@ -172,12 +176,12 @@ def _folded_column(column: Column) -> Column:
     if column.table not in _PER_PART:
         return column
     parts, every, short = _PER_PART[column.table]
-    for stream in STREAMS:
+    for stream in ("", *(f"{one}_" for one in STREAMS)):
         for part in parts:
-            if column.name.startswith(f"{stream}_{part}_q"):
+            if column.name.startswith(f"{stream}{part}_q"):
                 meaning = column.meaning.replace(f"{part} of", f"{every} of", 1)
                 meaning = meaning.replace(f"part {column.name[-1]} ", "part w, x, y or z ", 1)
-                return replace(column, name=f"{stream}_<{short}>_q<w|x|y|z>", meaning=meaning)
+                return replace(column, name=f"{stream}<{short}>_q<w|x|y|z>", meaning=meaning)
     return column
 
 

@@ -9,6 +9,10 @@ included with `valid` false. Texts are `object`, integers `Int64`, numbers `floa
 
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.clocks import run_clocks
+from app.features.results.analysis.tables.companions import (
+    companion_frames,
+    has_companion_frames,
+)
 from app.features.results.analysis.tables.context import KINDS, has_rules, of_kind
 from app.features.results.analysis.tables.equipment import (
     calibrations_table,
@@ -56,6 +60,7 @@ __all__ = [
     "calibrations_table",
     "clock_mapping_table",
     "clock_probes_table",
+    "companion_frames",
     "completions_table",
     "contact_spans_table",
     "contacts_table",
@@ -63,6 +68,7 @@ __all__ = [
     "doubts_table",
     "events_table",
     "goal_states_table",
+    "has_companion_frames",
     "has_rules",
     "has_tracker_samples",
     "headset_tests_table",

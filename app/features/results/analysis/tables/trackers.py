@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from sqlalchemy import select
+from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies import study_by_key
-from app.features.record.lab_trackers import decode_samples
+from app.features.record.lab_trackers import ENCODING, decode_samples
 from app.features.results.analysis.codebook import columns_of
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import finished, of_kind, sessions_context
@@ -68,9 +68,13 @@ def _alignment(row: TrackerAlignment) -> dict[str, Any]:
     }
 
 
+def _sent(session_id: str) -> tuple[ColumnElement[bool], ...]:
+    return TrackerChunk.session_id == session_id, TrackerChunk.encoding == ENCODING
+
+
 def has_tracker_samples(db: Session, session_id: str) -> bool:
     """Return whether anything that trackers sent is stored of a session."""
-    query = select(TrackerChunk.number).where(TrackerChunk.session_id == session_id).limit(1)
+    query = select(TrackerChunk.number).where(*_sent(session_id)).limit(1)
     return db.scalar(query) is not None
 
 
@@ -82,13 +86,8 @@ def tracker_samples(
     The columns are those of the codebook's table `trackers`. `simulated` and `avatar` are the
     session's, which every table repeats.
     """
-    query = (
-        select(TrackerChunk)
-        .where(TrackerChunk.session_id == session_id)
-        .order_by(TrackerChunk.number)
-        .execution_options(yield_per=16)
-    )
-    for row in db.scalars(query):
+    query = select(TrackerChunk).where(*_sent(session_id)).order_by(TrackerChunk.number)
+    for row in db.scalars(query.execution_options(yield_per=16)):
         found = decode_samples(row.trackers, row.sample_count, row.data)
         late_ns = np.round((found.arrival_s - row.first_s) * _NS_PER_S).astype("int64")
         yield pd.DataFrame(

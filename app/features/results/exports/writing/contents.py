@@ -29,12 +29,14 @@ from app.features.results.analysis.tables import (
     calibrations_table,
     clock_mapping_table,
     clock_probes_table,
+    companion_frames,
     completions_table,
     contacts_table,
     corrections_table,
     doubts_table,
     events_table,
     goal_states_table,
+    has_companion_frames,
     has_rules,
     has_tracker_samples,
     headset_tests_table,
@@ -50,6 +52,7 @@ from app.features.results.analysis.tables import (
     tracker_samples,
 )
 from app.features.results.exports.names import (
+    companions_path,
     fingers_path,
     receipt_path,
     road_path,
@@ -100,6 +103,7 @@ FOLDERS = {
     "samples": ".csv",
     "fingers": ".csv",
     "trackers": ".csv",
+    "companions": ".csv",
     "road": ".jsonl",
     "receipts": ".json",
     "protocol": ".yaml",
@@ -187,7 +191,7 @@ class Contents:
         simulated: bool,  # noqa: FBT001 - a column of the table
         avatar: str,
     ) -> Iterator[Member]:
-        """Yield what was recorded of a session's movement: bodies, fingers, trackers, the road."""
+        """Yield what was recorded of a session's movement, the participant's and that of others."""
         samples = SampleFile(
             *(self.db, session_id, simulated, avatar), blinded=session_id in self.hidden
         )
@@ -199,6 +203,10 @@ class Contents:
             sent = tracker_samples(self.db, session_id, simulated=simulated, avatar=avatar)
             pieces = csv_pieces_of_many("trackers", sent)
             yield self._member(trackers_path(code, session_id), pieces)
+        if has_companion_frames(self.db, session_id):
+            poses = companion_frames(self.db, session_id, simulated=simulated, avatar=avatar)
+            pieces = csv_pieces_of_many("companions", poses)
+            yield self._member(companions_path(code, session_id), pieces)
         # It has where the avatar was: see `blinding`.
         shown = () if session_id in self.hidden else road_records(self.db, session_id)
         for phase_id, part, record in shown:

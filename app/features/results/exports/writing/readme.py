@@ -39,6 +39,8 @@ Reading the files
   headset said that the eyes were, one row per pose, in the axes of each source and with three
   times: the source's own, the arrival, and the first on the server's clock.
   tracker_alignments.csv says how these axes lay in the headset's.
+  companions/, where it is there, holds the poses in which the participant was shown another person,
+  one row per pose while the headset showed them; events.csv says who that was, and where.
   road/, where it is there, holds the record of each run of the study's road as JSON lines: where
   the participant, cars and walkers were every step, and what was guessed. road_crossings.csv has
   the measures.

@@ -12,6 +12,7 @@ import { Failure } from "../../errors";
 import { type Key, useTexts } from "../../i18n";
 import { sessionTrackersQuery } from "../../queries";
 import cockpit from "../Cockpit.module.css";
+import live from "../Live.module.css";
 import classes from "./LabTrackersPanel.module.css";
 
 type Choice = SessionTrackers["choices"][number];
@@ -57,11 +58,11 @@ export function LabTrackersPanel({ session }: { readonly session: SessionView })
       />
       {choose.error !== null && <Failure error={choose.error} />}
       {shown.status === null || shown.status === undefined ? (
-        <p className={classes.soft}>{t("lab.help")}</p>
+        <p className={live.soft}>{t("lab.help")}</p>
       ) : (
         <InUse shown={shown} />
       )}
-      <Link href="/trackers" className={classes.soft ?? ""}>
+      <Link href="/trackers" className={live.soft ?? ""}>
         {t("lab.page")}
       </Link>
     </section>
@@ -77,19 +78,19 @@ function choicesOf({ door, source, choices }: SessionTrackers): readonly Choice[
 
 function InUse({ shown }: { readonly shown: SessionTrackers }): JSX.Element {
   const { t, language } = useTexts();
-  const { status, looking, problem, others = [], waiting_lost = 0 } = shown;
+  const { status, looking, problem, others = [], doubled = [], waiting_lost = 0 } = shown;
   const isAligned = status === "aligned";
   return (
     <>
-      <output className={classes.status}>
+      <output className={live.status}>
         <Icon name={isAligned ? "check" : "alert"} size={14} />
         {t(`lab.status.${status}` as Key)}
       </output>
-      {!isAligned && <p className={classes.soft}>{t(`lab.status.${status}.do` as Key)}</p>}
+      {!isAligned && <p className={live.soft}>{t(`lab.status.${status}.do` as Key)}</p>}
       {status === "looking" && looking != null && (
         <>
           <Progress value={100 * looking.progress} aria-label={t("lab.status.looking")} />
-          <p className={classes.soft}>
+          <p className={live.soft}>
             {t("lab.looked", {
               turn: number(looking.turn_deg, language, 0),
               nod: number(looking.nod_deg, language, 0),
@@ -103,6 +104,15 @@ function InUse({ shown }: { readonly shown: SessionTrackers }): JSX.Element {
           {t("lab.others.body", { others: others.join(", ") })}
         </Notice>
       )}
+      {doubled.map(({ limb, trackers: [used = "", ...rest] }) => (
+        <Notice
+          key={limb}
+          tone="warn"
+          title={t("lab.doubled", { limb: t(`joint.${limb}` as Key) })}
+        >
+          {t("lab.doubled.body", { used, others: rest.join(", ") })}
+        </Notice>
+      ))}
       {waiting_lost > 0 && <Notice tone="bad" title={t("lab.gaveUp", { count: waiting_lost })} />}
       <Figures shown={shown} />
       <Worn shown={shown} />
@@ -137,7 +147,7 @@ function Figures({ shown }: { readonly shown: SessionTrackers }): JSX.Element {
   }
   if (stored > 0) rows.push(["lab.stored", number(stored, language, 0)]);
   return (
-    <dl className={`${classes.figures} numbers`}>
+    <dl className={`${live.figures} numbers`}>
       {rows.map(([key, value]) => (
         <div key={key} style={{ display: "contents" }}>
           <dt>{t(key)}</dt>

@@ -45,6 +45,9 @@ export const labTrackersEn = {
   "lab.others": "Two senders have this name",
   "lab.others.body":
     "Only the first one is used, not {{others}}. Switch the other off, or give it another name.",
+  "lab.doubled": "Two trackers on one limb: {{limb}}",
+  "lab.doubled.body":
+    "{{used}} is used, not {{others}}. Give each its own limb, or none, on the page Trackers.",
   "lab.gaveUp_one": "{{count}} pose could not be stored: the disk was full.",
   "lab.gaveUp_other": "{{count}} poses could not be stored: the disk was full.",
 } as const;
@@ -95,6 +98,9 @@ export const labTrackersDe: Readonly<Record<keyof typeof labTrackersEn, string>>
   "lab.others": "Zwei Sender haben diesen Namen",
   "lab.others.body":
     "Nur der erste wird verwendet, nicht {{others}}. Schalten Sie den anderen aus oder geben Sie ihm einen anderen Namen.",
+  "lab.doubled": "Zwei Tracker an einem Körperteil: {{limb}}",
+  "lab.doubled.body":
+    "{{used}} gilt, nicht {{others}}. Geben Sie auf der Seite Tracker jedem seinen eigenen Körperteil oder keinen.",
   "lab.gaveUp_one": "{{count}} Pose konnte nicht gespeichert werden: Der Datenträger war voll.",
   "lab.gaveUp_other": "{{count}} Posen konnten nicht gespeichert werden: Der Datenträger war voll.",
 };

@@ -1,0 +1,78 @@
+/** Texts of the panel about the performer whom the participant sees in the headset. */
+export const companionEn = {
+  "companion.title": "Companion",
+  "companion.help":
+    "Somebody in motion capture whom the participant sees as another person, between tasks and in free movement. Their own mirror and boxes stay free.",
+  "companion.performer": "Performer",
+  "companion.nobody": "Choose a performer",
+  "companion.silentPerformer": "{{name}} (sends nothing)",
+  "companion.stature": "Stature",
+  "companion.body": "Body",
+  "companion.body.plain": "plain body",
+  "companion.place": "Place, seen by the participant",
+  "companion.place.ahead_left": "ahead on the left",
+  "companion.place.ahead_right": "ahead on the right",
+  "companion.place.left": "beside, on the left",
+  "companion.place.right": "beside, on the right",
+  "companion.inTasks": "Also seen during tasks",
+  "companion.inTasks.hint": "Then tasks look different from those of other participants.",
+  "companion.show": "Show to the participant",
+  "companion.apply": "Apply changes",
+  "companion.remove": "Show nobody",
+  "companion.now.away": "The headset is not here yet",
+  "companion.now.hidden": "Not seen at the moment",
+  "companion.now.seen": "The participant sees them now",
+  "companion.body.absent": "The performer sends nothing: open their door on the page Trackers.",
+  "companion.body.silent": "The performer has fallen silent; they stand still in the headset.",
+  "companion.body.gathering": "Not all bones have been seen: {{listed}}",
+  "companion.body.unusable": "Their skeleton cannot be used: {{listed}}",
+  "companion.others": "Two senders have this name",
+  "companion.others.body":
+    "Only {{address}} is used, not {{others}}. Switch the other off, or give it another name.",
+  "companion.latency": "From here to the headset",
+  "companion.latency.value": "{{median}} ms, 95 % within {{p95}} ms",
+  "companion.stored": "Poses stored",
+  "companion.gaveUp_one": "{{count}} pose could not be stored: the disk was full.",
+  "companion.gaveUp_other": "{{count}} poses could not be stored: the disk was full.",
+} as const;
+
+export const companionDe: Readonly<Record<keyof typeof companionEn, string>> = {
+  "companion.title": "Begleitperson",
+  "companion.help":
+    "Jemand in der Bewegungserfassung, den die Versuchsperson als andere Person sieht, zwischen den Aufgaben und in der freien Bewegung. Spiegel und Boxen bleiben frei.",
+  "companion.performer": "Darsteller",
+  "companion.nobody": "Darsteller wählen",
+  "companion.silentPerformer": "{{name}} (sendet nichts)",
+  "companion.stature": "Körpergröße",
+  "companion.body": "Körper",
+  "companion.body.plain": "einfacher Körper",
+  "companion.place": "Platz, von der Versuchsperson aus",
+  "companion.place.ahead_left": "vorn links",
+  "companion.place.ahead_right": "vorn rechts",
+  "companion.place.left": "daneben, links",
+  "companion.place.right": "daneben, rechts",
+  "companion.inTasks": "Auch während Aufgaben zu sehen",
+  "companion.inTasks.hint": "Aufgaben sehen dann anders aus als bei anderen Personen.",
+  "companion.show": "Der Versuchsperson zeigen",
+  "companion.apply": "Änderungen übernehmen",
+  "companion.remove": "Niemanden zeigen",
+  "companion.now.away": "Das Headset ist noch nicht da",
+  "companion.now.hidden": "Im Moment nicht zu sehen",
+  "companion.now.seen": "Die Versuchsperson sieht sie jetzt",
+  "companion.body.absent":
+    "Der Darsteller sendet nichts: Öffnen Sie seine Tür auf der Seite Tracker.",
+  "companion.body.silent":
+    "Der Darsteller ist verstummt; im Headset steht die Begleitperson still.",
+  "companion.body.gathering": "Noch sind nicht alle Knochen gekommen: {{listed}}",
+  "companion.body.unusable": "Das Skelett ist nicht verwendbar: {{listed}}",
+  "companion.others": "Zwei Sender haben diesen Namen",
+  "companion.others.body":
+    "Nur {{address}} wird verwendet, nicht {{others}}. Schalten Sie den anderen aus oder geben Sie ihm einen anderen Namen.",
+  "companion.latency": "Von hier zum Headset",
+  "companion.latency.value": "{{median}} ms, 95 % in {{p95}} ms",
+  "companion.stored": "Gespeicherte Posen",
+  "companion.gaveUp_one":
+    "{{count}} Pose konnte nicht gespeichert werden: Der Datenträger war voll.",
+  "companion.gaveUp_other":
+    "{{count}} Posen konnten nicht gespeichert werden: Der Datenträger war voll.",
+};
