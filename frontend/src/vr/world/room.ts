@@ -72,19 +72,22 @@ function paintRoom(painted: Painted, front: number): void {
   }
 }
 
-/** The wall around the hole, which shows what is behind it. */
+/**
+ * The wall around the hole, which shows what is behind it. It ends under the frame: an edge in one
+ * plane with the frame's would shine through between the frame and its reflection, pixel by pixel.
+ */
 function paintMirrorWall(painted: Painted, { planeZM: z, widthM, heightM }: Mirror): void {
-  const half = widthM / 2;
+  const half = widthM / 2 + FRAME_M / 2;
+  const top = heightM + FRAME_M / 2;
   const aside = HALF_WIDTH_M - half;
   const { low, high, left } = WALL_EDGES;
   const up: Point = [0, HEIGHT_M, 0];
   painted.panel([-HALF_WIDTH_M, 0, z], [aside, 0, 0], up, MIRROR_WALL, { low, high, left });
   painted.panel([half, 0, z], [aside, 0, 0], up, MIRROR_WALL, { low, high, right: left });
-  painted.panel([-half, heightM, z], [widthM, 0, 0], [0, HEIGHT_M - heightM, 0], MIRROR_WALL, {
-    high,
-  });
-  skirting(painted, [-HALF_WIDTH_M, 0, z], [aside - FRAME_M, 0, 0]);
-  skirting(painted, [half + FRAME_M, 0, z], [aside - FRAME_M, 0, 0]);
+  painted.panel([-half, top, z], [2 * half, 0, 0], [0, HEIGHT_M - top, 0], MIRROR_WALL, { high });
+  const board = aside - FRAME_M / 2;
+  skirting(painted, [-HALF_WIDTH_M, 0, z], [board, 0, 0]);
+  skirting(painted, [half + FRAME_M / 2, 0, z], [board, 0, 0]);
 }
 
 /** A thin frame, which stands a little in front of the glass and so has a reflection, too. */
