@@ -3,6 +3,7 @@ import type { ClientRequest, IncomingMessage } from "node:http";
 import { resolve } from "node:path";
 import react from "@vitejs/plugin-react";
 import { defineConfig, type Plugin, type ProxyOptions } from "vite";
+import { brotli } from "./brotli.ts";
 import { helpPages } from "./helpPages.ts";
 import { tabletWorker, WORKER } from "./tabletWorker.ts";
 import { textTables } from "./textTables.ts";
@@ -71,6 +72,7 @@ export default defineConfig({
     helpPages(repository),
     tabletWorker(),
     textTables(source, alias),
+    brotli(),
   ],
   resolve: { alias },
   build: {

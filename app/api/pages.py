@@ -27,6 +27,7 @@ _WORTH_IT = (
 )
 _SMALL_BYTES = 1024
 _LEVEL = 6
+_BROTLI = ".br"
 PAGES = {"/": "console/index.html", "/tablet": "tablet/index.html", "/vr": "vr/index.html"}
 # A service worker controls the addresses next to and below its own, which identifies it.
 TABLET_WORKER = "/tablet-worker.js"
@@ -49,8 +50,9 @@ _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reem
 class Assets(StaticFiles):
     """The static files whose names contain a hash of the content, so that browsers may cache them.
 
-    A file is compressed once and stays in memory: about a megabyte for all pages together,
-    and 2.6 for MuJoCo's WebAssembly.
+    The build has compressed them with Brotli, which browsers take by https and from their own
+    machine (`frontend/brotli.ts`). For others a file is compressed with gzip once. Both stay in
+    memory: about a megabyte for all pages together, and 2.6 for MuJoCo's WebAssembly.
     """
 
     def file_response(self, *args: Any, **kwargs: Any) -> Response:
@@ -60,22 +62,27 @@ class Assets(StaticFiles):
         return response
 
     async def get_response(self, path: str, scope: Scope) -> Response:
-        """Return the file, compressed if the client accepts gzip."""
+        """Return the file, compressed if the client accepts it."""
         response = await super().get_response(path, scope)
         policy = asset_headers(path)
         response.headers.update(policy)
         if not isinstance(response, FileResponse) or not _is_worth_it(response):
             return response
         response.headers["vary"] = "Accept-Encoding"
-        if scope["method"] != "GET" or not _takes_gzip(Headers(scope=scope)):
-            return response
-        body = await asyncio.to_thread(_compressed, str(response.path))
+        taken = _encodings(Headers(scope=scope)) if scope["method"] == "GET" else frozenset()
+        path = str(response.path)
         headers = {
             "cache-control": response.headers["cache-control"],
-            "content-encoding": "gzip",
             "vary": "Accept-Encoding",
             **policy,
         }
+        if "br" in taken and (body := await asyncio.to_thread(_prepared, path)) is not None:
+            headers["content-encoding"] = "br"
+            return Response(body, headers=headers, media_type=response.media_type)
+        if "gzip" not in taken:
+            return response
+        headers["content-encoding"] = "gzip"
+        body = await asyncio.to_thread(_compressed, path)
         return Response(body, headers=headers, media_type=response.media_type)
 
 
@@ -94,9 +101,18 @@ def _is_worth_it(response: FileResponse) -> bool:
     return response.status_code == 200 and kind in _WORTH_IT and size > _SMALL_BYTES
 
 
-def _takes_gzip(headers: Headers) -> bool:
+def _encodings(headers: Headers) -> frozenset[str]:
+    """Return the encodings that a client takes by name."""
     offered = headers.get("accept-encoding", "").lower().replace(" ", "").split(",")
-    return any(one == "gzip" or (one.startswith("gzip;") and one[5:] != "q=0") for one in offered)
+    named = (one.partition(";") for one in offered)
+    return frozenset(name for name, _, weight in named if weight != "q=0")
+
+
+@lru_cache(maxsize=1024)
+def _prepared(path: str) -> bytes | None:
+    """Return what the build has compressed, if it has; a file's name changes with its content."""
+    prepared = Path(path + _BROTLI)
+    return prepared.read_bytes() if prepared.is_file() else None
 
 
 @lru_cache(maxsize=256)

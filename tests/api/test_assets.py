@@ -44,6 +44,25 @@ def test_a_client_without_gzip_gets_the_plain_file(client: TestClient, accepted:
     assert answer.headers["vary"] == "Accept-Encoding"
 
 
+def test_what_the_build_has_compressed_is_sent_to_those_who_take_it(
+    client: TestClient, tmp_path: Path
+) -> None:
+    """The bytes beside the script are sent as they are, as a script; others get gzip."""
+    (tmp_path / "page.js.br").write_bytes(b"as the build wrote it")
+    offered = {"accept-encoding": "gzip, deflate, br;q=0.9"}
+    with client.stream("GET", "/assets/page.js", headers=offered) as answer:
+        wire = b"".join(answer.iter_raw())
+    assert wire == b"as the build wrote it"
+    assert answer.headers["content-encoding"] == "br"
+    assert answer.headers["vary"] == "Accept-Encoding"
+    assert answer.headers["content-type"].startswith("text/javascript")
+    assert "immutable" in answer.headers["cache-control"]
+    for refused in ("gzip", "gzip, br;q=0"):
+        other = client.get("/assets/page.js", headers={"accept-encoding": refused})
+        assert other.headers["content-encoding"] == "gzip"
+        assert other.text == SCRIPT
+
+
 @pytest.mark.parametrize("name", ["tiny.js", "picture.png"])
 def test_small_and_compressed_files_are_not_compressed(client: TestClient, name: str) -> None:
     """Small files and those that are compressed already are sent unchanged."""
