@@ -23,7 +23,6 @@ from app.features.record.cockpit.schemas import (
     NamedAvatar,
     NoteView,
     RefusalView,
-    SessionSummary,
     SessionView,
     SlotInfo,
     StepBrief,
@@ -72,9 +71,9 @@ def session_view(
     state, plan, slot = state_of(session), plan_of(db, session), slot_of(db, session)
     reasons, alarms = _reasons(db, session), open_alarms(db, session.id)
     order = _HIDDEN_ORDER if blinded else _order(protocol, slot.sequence)
-    summary = _summary(session, version.number, _code(db, session), order)
+    listed = _listed(session, version.number, _code(db, session), order)
     return SessionView(
-        **summary.model_dump(),
+        **listed.model_dump(exclude={"step"}),
         blinded=blinded,
         study_key=protocol.key,
         study_title=chosen(protocol.title, "en"),
@@ -144,7 +143,7 @@ def list_sessions(
     hidden = hidden_sessions(db, study, caller)
     steps = _steps_of_running(db, study)
     orders: dict[tuple[str, ...], _Order] = {}
-    summaries = []
+    listed = []
     for row in db.execute(query):
         version = versions[row.study_version_id]
         if row.id in hidden:
@@ -153,9 +152,8 @@ def list_sessions(
             order = orders.get((version.id, *row.sequence)) or orders.setdefault(
                 (version.id, *row.sequence), _order(protocol_of(version), row.sequence)
             )
-        summary = _summary(row, version.number, row.code, order)
-        summaries.append(ListedSession(**dict(summary), step=steps.get(row.id)))
-    return summaries
+        listed.append(_listed(row, version.number, row.code, order, steps.get(row.id)))
+    return listed
 
 
 def _steps_of_running(db: Session, study: Study) -> dict[str, StepBrief]:
@@ -225,11 +223,15 @@ def _order(protocol: StudyProtocol, sequence: Sequence[str]) -> _Order:
     )
 
 
-def _summary(
-    session: StudySession | Row[Any], version_number: int, code: str, order: _Order
-) -> SessionSummary:
+def _listed(
+    session: StudySession | Row[Any],
+    version_number: int,
+    code: str,
+    order: _Order,
+    step: StepBrief | None = None,
+) -> ListedSession:
     """Summarise a session, or a row with the same names of its columns."""
-    return SessionSummary(
+    return ListedSession(
         id=session.id,
         participant_code=code,
         kind=session.kind,
@@ -243,6 +245,7 @@ def _summary(
         shortfalls=(
             None if session.shortfalls is None else list(shortfalls_of(session.shortfalls))
         ),
+        step=step,
     )
 
 
