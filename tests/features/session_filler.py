@@ -6,7 +6,7 @@ table by table, without an object for each.
 
 import hashlib
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -49,6 +49,8 @@ class SessionSpec:
     skipped: tuple[str, ...] = ()
     open_answer: str = "The boxes on the left."
     likert: Callable[[Step, str], int] | None = None
+    about: Mapping[str, float | str] = field(default_factory=dict)
+    """Answers by the key of the item, in place of those that are made up."""
     completions: Callable[[Step], int] = lambda step: 3 if step.limb == "hand" else 2
     joint_error_rad: Callable[[Step, str], float] = lambda step, _: (step.latency_ms or 0) / 1000
 
@@ -238,7 +240,7 @@ class Filler:
                 answers[item.key] = float(own if own is not None else drawn)
             else:
                 answers[item.key] = float(item.minimum or 0)
-        return answers
+        return answers | {key: self.spec.about[key] for key in self.spec.about if key in answers}
 
 
 def stable_id(*parts: object) -> str:

@@ -1,25 +1,41 @@
-"""Generate docs/pages.md, and the pictures of other documents, from the browser tests' shots.
+"""Make docs/pages.md, and the pictures of other documents, from what the browser tests see.
 
-    REEMBODY_SCREENSHOTS=FOLDER ./run test -m browser tests/e2e
+    python -m tests.support.page_pictures                        all of them, in half an hour
+    python -m tests.support.page_pictures --only statistics tour these
+    python -m tests.support.page_pictures --from FOLDER          without running tests
 
-    python -m tests.support.page_pictures FOLDER
-
-The pictures have 256 colours, which makes them a third of the browser's size, and are cropped to a
-height that suits the document. A picture that is missing in the folder is left unchanged.
+The tests that draw a picture are found by its name; they draw into $REEMBODY_SCREENSHOTS, which may
+be a FOLDER of an earlier run. The pictures have 256 colours, which makes them a third of the
+browser's size, and are cropped to a height that suits the document. One that looks as before, or is
+missing in the folder, is left unchanged.
 """
 
+import argparse
+import os
+import re
+import subprocess
 import sys
+import tempfile
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+BROWSER_TESTS = ROOT / "tests" / "e2e"
 PICTURES = DOCS / "images" / "pages"
 COLOURS = 256
 TALLEST_PX = 1400
 WINDOW_PX = 800
 """The height with an open dialog: below the window the page is not dimmed."""
+DIFFERENT = 40
+"""By how much of 255 a pixel of a changed page differs; dates, codes and edges differ anyway."""
+LEAST_SHARE = 0.004
+"""The share of such pixels that makes a new picture."""
+_DRAWN = re.compile(r'(?:screenshot|draw)\([^,()]+, (f?)"([^"]+)"')
 
 
 @dataclass(frozen=True)
@@ -147,14 +163,28 @@ TABLET = (
     Page("stop-rule-tablet", "Held", "The participant is told to wait for the operator."),
     Page("pairing-first-time", "First time", "How a device learns to trust the lab."),
 )
+SHOTS = frozenset({*ELSEWHERE.values(), *(page.shot for page in (*CONSOLE, *TABLET))})
 
 
-def small_picture(source: Path, target: Path, tallest_px: int) -> None:
-    """Save a cropped copy of a picture with few colours."""
+def small_picture(source: Path, target: Path, tallest_px: int) -> bool:
+    """Save a cropped copy of a picture with few colours; return whether it differs from before."""
     with Image.open(source) as picture:
-        top = picture.crop((0, 0, picture.width, min(picture.height, tallest_px)))
-        few = top.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-        few.save(target, optimize=True)
+        top = picture.crop((0, 0, picture.width, min(picture.height, tallest_px))).convert("RGB")
+    if target.exists() and looks_alike(top, target):
+        return False
+    top.quantize(COLOURS, dither=Image.Dither.NONE).save(target, optimize=True)
+    return True
+
+
+def looks_alike(picture: Image.Image, before: Path) -> bool:
+    """Return whether a picture has the size of one made before and nearly all of its pixels."""
+    with Image.open(before) as opened:
+        old = np.asarray(opened.convert("RGB"), np.int16)
+    new = np.asarray(picture, np.int16)
+    if old.shape != new.shape:
+        return False
+    differs = (np.abs(new - old) > DIFFERENT).any(axis=2)
+    return float(differs.mean()) < LEAST_SHARE
 
 
 def section(heading: str, pages: tuple[Page, ...]) -> list[str]:
@@ -167,18 +197,50 @@ def section(heading: str, pages: tuple[Page, ...]) -> list[str]:
     return lines
 
 
-def main(folder: Path) -> None:
-    """Write the pictures and the document that shows them."""
+def tests_that_draw(shots: Collection[str]) -> list[Path]:
+    """Return the files of browser tests that draw any of these, by the names in their source."""
+    return [
+        file
+        for file in sorted(BROWSER_TESTS.glob("test_*.py"))
+        if any(
+            _pattern(name, formatted=bool(formatted)).fullmatch(shot)
+            for formatted, name in _DRAWN.findall(file.read_text(encoding="utf-8"))
+            for shot in shots
+        )
+    ]
+
+
+def _pattern(name: str, *, formatted: bool) -> re.Pattern[str]:
+    """Return what matches a name, in which `{...}` stands for anything if it is formatted."""
+    parts = re.split(r"\{[^}]*\}", name) if formatted else [name]
+    return re.compile("[a-z0-9_-]+".join(map(re.escape, parts)))
+
+
+def draw(shots: Collection[str], folder: Path) -> None:
+    """Run the browser tests that draw these pictures; one that fails leaves its own out."""
+    files = [str(file.relative_to(ROOT)) for file in tests_that_draw(shots)]
+    environment = {**os.environ, "REEMBODY_SCREENSHOTS": str(folder)}
+    command = [sys.executable, "-m", "pytest", "-q", "-m", "browser", *files]
+    subprocess.run(command, cwd=ROOT, env=environment, check=False)
+
+
+def write(folder: Path, only: Collection[str]) -> None:
+    """Write the pictures that the folder has, and the document that shows them."""
     PICTURES.mkdir(parents=True, exist_ok=True)
-    for name, shot in ELSEWHERE.items():
-        if (folder / f"{shot}.png").exists():
-            small_picture(folder / f"{shot}.png", DOCS / "images" / f"{name}.png", WINDOW_PX)
-    for page in (*CONSOLE, *TABLET):
-        source = folder / f"{page.shot}.png"
-        if source.exists():
-            small_picture(source, PICTURES / source.name, page.tallest_px)
-        else:
+    targets = [
+        (shot, DOCS / "images" / f"{name}.png", WINDOW_PX) for name, shot in ELSEWHERE.items()
+    ]
+    targets += [
+        (page.shot, PICTURES / f"{page.shot}.png", page.tallest_px) for page in (*CONSOLE, *TABLET)
+    ]
+    for shot, target, tallest_px in targets:
+        if shot not in only:
+            continue
+        source = folder / f"{shot}.png"
+        if not source.exists():
             sys.stderr.write(f"no {source.name}\n")
+        elif small_picture(source, target, tallest_px):
+            sys.stderr.write(f"new {target.relative_to(ROOT)}\n")
     lines = [
         "# Every page",
         "",
@@ -191,5 +253,22 @@ def main(folder: Path) -> None:
     (DOCS / "pages.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
 
 
+def main(arguments: Sequence[str]) -> None:
+    """Draw the pictures, or take those of a folder, and write the documents."""
+    parser = argparse.ArgumentParser(prog="python -m tests.support.page_pictures")
+    parser.add_argument("--from", dest="folder", type=Path, metavar="FOLDER")
+    parser.add_argument("--only", nargs="+", metavar="NAME", default=sorted(SHOTS))
+    asked = parser.parse_args(arguments)
+    unknown = sorted(set(asked.only) - SHOTS)
+    if unknown:
+        parser.error(f"no picture {', '.join(unknown)}; there are {', '.join(sorted(SHOTS))}")
+    if asked.folder is not None:
+        write(asked.folder, asked.only)
+        return
+    with tempfile.TemporaryDirectory(prefix="reembody-pictures-") as scratch:
+        draw(asked.only, Path(scratch))
+        write(Path(scratch), asked.only)
+
+
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(sys.argv[1:])

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx2
+import numpy as np
 from sqlalchemy import select
 
 from app.database import Database
@@ -31,6 +32,8 @@ REPLAYED_S = 3.0
 CAPTURE_FRAMES = 60
 PATIENCE_S = 60.0
 COMPUTED_WITHIN_S = 300.0
+AGAINST = frozenset({"q2", "q3", "q5", "q9", "q11"})
+"""Items of the embodiment questionnaire with which one agrees who feels no embodiment."""
 RULES = re.compile(r"^valid_when:\n(?:[ #].*\n|\n)*", re.MULTILINE)
 
 
@@ -86,18 +89,35 @@ def filled_lab(folder: Path) -> Iterator[FilledLab]:
         yield FilledLab(server, places, cookies)
 
 
-def _falling(step: Step, item: str) -> int:
-    """Return a rating that falls with the added latency, and differs between items."""
-    return 6 - int((step.latency_ms or 0.0) / 100.0) - len(item) % 2
+def _person(kind: str, at: int) -> SessionSpec:
+    """Return somebody whose ratings fall with the added latency, unlike others in all they say."""
+    rng = np.random.default_rng(at)
+    lower = int(rng.integers(3))
+
+    def rated(step: Step, item: str) -> int:
+        fallen = int((step.latency_ms or 0.0) / 100.0 + rng.uniform(0.0, 1.5))
+        rating = max(1, 7 - lower - fallen)
+        return 8 - rating if item in AGAINST else rating
+
+    about: dict[str, float | str] = {
+        "age": float(rng.integers(19, 45)),
+        "height_cm": float(rng.integers(155, 195)),
+        "weight_kg": float(rng.integers(50, 95)),
+        "sex": str(rng.choice(["female", "male"])),
+        "handedness": str(rng.choice(["left", "right"], p=[0.25, 0.75])),
+        "footedness": str(rng.choice(["left", "right", "both"])),
+        "motion_sickness": float(rng.random() < 0.4),
+    }
+    code = {"people": "P", "simulated": "SIM"}[kind]
+    return SessionSpec(f"{code}-{at:04d}", kind=kind, likert=rated, about=about)
 
 
 def _sessions(database: Database) -> str:
     """Store the completed sessions; return the id of one with a phase that can be replayed."""
     with database.writing() as db:
         for at in range(SESSIONS):
-            for kind, code in (("people", "P"), ("simulated", "SIM")):
-                spec = SessionSpec(f"{code}-{at:04d}", kind=kind, likert=_falling)
-                session = build_session(db, spec)
+            for kind in ("people", "simulated"):
+                session = build_session(db, _person(kind, at))
                 if at > 0 or kind == "people":
                     continue
                 replayed = session

@@ -7,7 +7,11 @@ from itertools import pairwise
 
 import pandas as pd
 
-from app.features.results.preregistration.declaration import Declared, declared_in
+from app.features.results.preregistration.declaration import (
+    Declared,
+    declared_in,
+    rule_words,
+)
 from app.features.results.preregistration.exclusions import Excluded
 from app.features.results.preregistration.primary_test import Values
 from app.features.results.preregistration.schemas import DeviationCode, DeviationView
@@ -30,7 +34,7 @@ def deviations_of(
         *_versions(declared, versions, sessions),
         *_numbers(declared, sessions, len(found.people)),
         *_by_hand(declared, sessions),
-        *_unjudged(excluded),
+        *_unjudged(declared, excluded),
         *_values(found, n_corrected),
         *_notes(declared),
     ]
@@ -125,12 +129,15 @@ def _by_hand(declared: Declared, sessions: pd.DataFrame) -> list[DeviationView]:
     ]
 
 
-def _unjudged(excluded: Excluded) -> list[DeviationView]:
+def _unjudged(declared: Declared, excluded: Excluded) -> list[DeviationView]:
+    words: dict[str, str] = {
+        one.rule: rule_words(one) for one in declared.preregistration.exclusions
+    }
     return [
         _deviation(
             "not_judged",
-            f"The rule {rule} could not be applied to {_names(codes)}, because nothing was "
-            "measured. It did not exclude them.",
+            f"The rule “{words[rule]}” could not be applied to {_names(codes)}, because nothing "
+            "was measured. It did not exclude them.",
         )
         for rule, codes in excluded.not_judged.items()
     ]

@@ -44,10 +44,11 @@ function element(
   if (tag === "img") return <img key={key} src={src} alt={alt} loading="lazy" />;
   if (tag === "table")
     return (
+      // A figure, not a region: a page has several tables, and regions need names of their own.
       // biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with the keyboard
-      <section key={key} className={classes.table} aria-label={table} tabIndex={0}>
+      <figure key={key} className={classes.table} aria-label={table} tabIndex={0}>
         <table>{inside}</table>
-      </section>
+      </figure>
     );
   if (tag === "pre")
     return (

@@ -40,7 +40,7 @@ export function ImportsCard({ study }: { readonly study: StudyDetail }): JSX.Ele
           </Button>
         )}
       </div>
-      <Loaded query={useQuery(importsQuery(study.key))}>
+      <Loaded query={useQuery(importsQuery(study.key))} isShort>
         {(found) =>
           found.length === 0 ? (
             <p className={classes.soft}>{t("imports.none")}</p>

@@ -10,6 +10,8 @@ import { useTexts } from "../i18n";
 import { endingOf, type Film, type FilmColours, type FilmWords, filmType, startFilm } from "./film";
 
 interface FilmButtonProps {
+  /** Whether there is a picture to record. */
+  readonly isReady: boolean;
   /** The element around the stages, whose canvases are recorded. */
   readonly stages: RefObject<HTMLElement | null>;
   readonly playback: Playback;
@@ -22,7 +24,7 @@ interface FilmButtonProps {
 const TYPE = filmType();
 
 export function FilmButton(props: FilmButtonProps): JSX.Element {
-  const { stages, playback, duration } = props;
+  const { isReady, stages, playback, duration } = props;
   const { t } = useTexts();
   const film = useRef<Film | null>(null);
   const [isOn, setOn] = useState(false);
@@ -95,6 +97,7 @@ export function FilmButton(props: FilmButtonProps): JSX.Element {
     );
   }
   const title = t(TYPE === null ? "replay.film.cannot" : "replay.film");
+  const isOff = TYPE === null || !isReady;
   return (
     <Tooltip label={title}>
       <ActionIcon
@@ -102,9 +105,11 @@ export function FilmButton(props: FilmButtonProps): JSX.Element {
         size="lg"
         aria-label={title}
         // Named and reachable all the same, so that it can say why.
-        aria-disabled={TYPE === null}
-        {...(TYPE === null ? { "data-disabled": true } : {})}
-        onClick={begin}
+        aria-disabled={isOff}
+        {...(isOff ? { "data-disabled": true } : {})}
+        onClick={() => {
+          if (!isOff) begin();
+        }}
       >
         <Icon name="film" size={18} />
       </ActionIcon>

@@ -118,7 +118,7 @@ function PhaseSelect(props: PhaseSelectProps): JSX.Element {
   return (
     <Select
       size="xs"
-      styles={{ wrapper: { width: 232 } }}
+      styles={{ wrapper: { width: "min(232px, 100%)" } }}
       allowDeselect={false}
       label={label}
       classNames={{ root: classes.select ?? "", label: classes.selectLabel ?? "" }}

@@ -113,6 +113,8 @@ function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element
   const shown = lanes[Math.min(at, lanes.length - 1)] as Lane;
   const link = () =>
     new URL(addressOf(session.id, { ...params, time: playback.time }), window.location.href).href;
+  // The movement comes later: what it needs has its place from the start.
+  const isRecorded = lanes.some(({ replay }) => replay.has_movement);
   const rate = lanes.find(({ movement }) => movement !== null)?.movement?.participant.rateHz ?? 30;
   useReplayKeys({
     toggle: playback.toggle,
@@ -163,8 +165,9 @@ function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element
           duration={duration}
           link={link}
           film={
-            lanes.some(({ movement }) => movement !== null) && (
+            isRecorded && (
               <FilmButton
+                isReady={lanes.some(({ movement }) => movement !== null)}
                 stages={staged}
                 playback={playback}
                 duration={duration}
@@ -234,6 +237,7 @@ interface OptionsProps {
 function Options(props: OptionsProps): JSX.Element {
   const { lanes, ghost, isGhostSeen, boxes, onGhost, onBoxes, camera } = props;
   const { t } = useTexts();
+  const isRecorded = lanes.some(({ replay }) => replay.has_movement);
   const isFull = lanes.some(({ movement }) => movement?.avatar != null);
   const isWorn = lanes.some(({ replay }) => replay.humanoid != null);
   const hasBoxes = lanes.some(({ replay }) => replay.surfaces.length > 0);
@@ -242,12 +246,12 @@ function Options(props: OptionsProps): JSX.Element {
       {camera}
       <div className={classes.shown}>
         {isWorn && <DrawnAs />}
-        {isFull && (
+        {isRecorded && (
           <Checkbox
             size="xs"
             label={t("replay.ghost")}
             checked={ghost}
-            disabled={!isGhostSeen}
+            disabled={!isFull || !isGhostSeen}
             onChange={(event) => onGhost(event.currentTarget.checked)}
           />
         )}

@@ -13,7 +13,7 @@ import {
 } from "@shared/api/analysis";
 import type { StudyDetail } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
-import { useIsFetching, useQuery } from "@tanstack/react-query";
+import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useLocation, useSearch } from "wouter";
 import { useTexts } from "../../i18n";
@@ -37,7 +37,6 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
   const { t } = useTexts();
   const [filter, setFilter] = useFilter(study.key);
   const query = useQuery(dashboardQuery(study.key, filter, FIRST));
-  const waiting = useIsFetching({ queryKey: ["studies", study.key, "dashboard"] }) > 0;
   return (
     <>
       <div className={page.toolbar}>
@@ -47,7 +46,7 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
         />
         <Counted
           found={query.data}
-          doing={query.data?.current === false || waiting ? t("dashboard.drawing") : null}
+          doing={query.data?.current === false ? t("dashboard.drawing") : null}
         />
       </div>
       <Loaded query={query}>

@@ -4,7 +4,7 @@
  *
  * It reads what the results' own pages read, so nobody sees here what they may not see there.
  */
-import { Button, CopyButton, Paper, Title } from "@mantine/core";
+import { Anchor, Button, CopyButton, Paper, Title } from "@mantine/core";
 import {
   type Dashboard,
   filterFrom,
@@ -148,7 +148,9 @@ function Summary({ study, kind, dashboard }: SummaryProps): JSX.Element {
       <section>
         <div className={classes.titleRow}>
           <Title order={2}>{t("summary.figures")}</Title>
-          <Link href={`/studies/${study.key}/dashboard`}>{t("summary.more")}</Link>
+          <Anchor component={Link} href={`/studies/${study.key}/dashboard`}>
+            {t("summary.more")}
+          </Anchor>
         </div>
         <div className={figures.figures}>
           {dashboard.figures
