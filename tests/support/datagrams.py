@@ -1,4 +1,4 @@
-"""UDP for tests: a free port, a sender from one address, and one that sends all the time."""
+"""UDP for tests: a free port, senders from one address, and a network that misbehaves."""
 
 import socket
 import threading
@@ -38,3 +38,30 @@ def sending(port: int, packet: Callable[[int], bytes]) -> Iterator[None]:
 
     with beside(send):
         yield
+
+
+class Network:
+    """A way for datagrams to a port that loses, doubles or swaps them, from one address.
+
+    `is_gone`: all are lost. `doubles`: each arrives twice. `swaps`: each second one is overtaken by
+    the next. `passed`: what has arrived, each once.
+    """
+
+    def __init__(self, send: Callable[[bytes], object]) -> None:
+        self.is_gone = self.doubles = self.swaps = False
+        self.passed: list[bytes] = []
+        self._send = send
+        self._held: bytes | None = None
+
+    def __call__(self, packet: bytes) -> None:
+        """Let a datagram go the way."""
+        if self.is_gone:
+            return
+        if self.swaps and self._held is None:
+            self._held = packet
+            return
+        held, self._held = self._held, None
+        for one in (packet,) if held is None else (packet, held):
+            self.passed.append(one)
+            for _ in range(2 if self.doubles else 1):
+                self._send(one)

@@ -49,7 +49,8 @@ class Sample:
     label, `address` that of the sender. `source_s` is the time by the source's own clock, None if
     it sends none. `mapped_s` is that time on the server's clock, with its uncertainty; without a
     source time it is the arrival. `uncertainty_s` is None without a source time, and while it is
-    unknown. `skeletons` are as in `Reading`.
+    unknown. `skeletons` are as in `Reading`. `is_late`: a newer packet had come before, so it is
+    for the record only.
     """
 
     door: DoorKey | Literal["headset"]
@@ -61,6 +62,7 @@ class Sample:
     mapped_s: float
     uncertainty_s: float | None
     skeletons: tuple[SkeletonDefinition, ...] = ()
+    is_late: bool = False
 
 
 class SourceClock:
@@ -196,12 +198,14 @@ class Source:
         return same and now_s - self.last_s > SILENT_S
 
     def note(self, reading: Reading, arrival_s: float) -> Sample | None:
-        """Take a packet; return its sample, or None if it has none or was doubled or late."""
+        """Take a packet; return its sample, or None if it has none or was doubled."""
         self.packets += 1
         self.last_s = arrival_s
         self.problems += reading.problems
+        late = self.late
         if not self._in_order(reading):
-            return None
+            is_late = self.late > late and bool(reading.poses)
+            return self._sample(reading, arrival_s, is_late=True) if is_late else None
         if reading.time_s is not None:
             self.clock.note(reading.time_s, arrival_s)
         if not reading.poses:
@@ -217,7 +221,7 @@ class Source:
         self.latest = self._sample(reading, arrival_s)
         return self.latest
 
-    def _sample(self, reading: Reading, arrival_s: float) -> Sample:
+    def _sample(self, reading: Reading, arrival_s: float, *, is_late: bool = False) -> Sample:
         offset = self.clock.offset_s
         is_timed = reading.time_s is not None and offset is not None
         return Sample(
@@ -230,6 +234,7 @@ class Source:
             mapped_s=(reading.time_s or 0.0) + (offset or 0.0) if is_timed else arrival_s,
             uncertainty_s=self.clock.uncertainty_s if is_timed else None,
             skeletons=reading.skeletons,
+            is_late=is_late,
         )
 
     def _in_order(self, reading: Reading) -> bool:

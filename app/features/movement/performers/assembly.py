@@ -22,6 +22,8 @@ from app.features.movement.live import Sample
 from app.science.rig import BoolArray, Rig, to_local
 from app.science.rotations import FloatArray, conjugate, identity, multiply, normalise, rotate
 
+Sent = tuple[str, SkeletonDefinition | None]
+"""The name of a skeleton, and its definition; none for the bones of a Unity avatar."""
 CHECKED_S = 1.0
 """How often it is checked whether offsets have changed, and in which frame poses are."""
 SAME_M = 0.005
@@ -84,6 +86,12 @@ class Assembly:
         self._root: Pose | None = None
         self._checked_s = float("-inf")
         self._number = 0
+
+    @property
+    def trackers(self) -> tuple[str, ...]:
+        """The bones by the names that the source gives them, in the order of the rig."""
+        definition = self._definition
+        return () if definition is None else tuple(one.tracker for one in definition.bones)
 
     def take(self, sample: Sample, definition: SkeletonDefinition | None) -> list[BodyFrame]:
         """Take a packet; return the frames that are complete with it, the older first.
@@ -236,6 +244,18 @@ class Assembly:
             return
         names = safe_names(tuple(one.tracker for one in definition.bones))
         self.skeleton = Skeleton(Rig(names, parents, offsets, identity(len(names))), in_parent)
+
+
+def skeletons_in(sample: Sample) -> list[Sent]:
+    """Return the skeletons of which a packet has a bone."""
+    if sample.door == "osc":
+        return [("", None)] if any(one.kind == "bone" for one in sample.poses) else []
+    sent = {one.tracker for one in sample.poses}
+    return [
+        (one.name, one)
+        for one in sample.skeletons
+        if any(bone.tracker in sent for bone in one.bones)
+    ]
 
 
 _NOWHERE = (0.0, 0.0, 0.0)

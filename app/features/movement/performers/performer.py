@@ -69,6 +69,11 @@ class Performer:
         """The bones that were not seen yet."""
         return self._assembly.missing if self.newest is None else ()
 
+    @property
+    def trackers(self) -> tuple[str, ...]:
+        """The bones by the names that the source gives them, in the order of the rig."""
+        return self._assembly.trackers
+
     def take(self, sample: Sample, definition: SkeletonDefinition | None) -> list[BodyFrame]:
         """Take a packet of the source; return the frames that are complete with it."""
         self.last_s = sample.arrival_s

@@ -3,10 +3,9 @@
 import threading
 from collections.abc import Callable, Sequence
 
-from app.adapters.live import SkeletonDefinition
 from app.errors import Busy, Conflict, NotFound
 from app.features.movement.live import FORGOTTEN_S, SILENT_S, LiveTracking, Sample
-from app.features.movement.performers.assembly import BodyFrame
+from app.features.movement.performers.assembly import BodyFrame, skeletons_in
 from app.features.movement.performers.performer import AgreedPose, Performer, PerformerName
 from app.features.movement.performers.recording import (
     BYTES_PER_NUMBER,
@@ -177,19 +176,9 @@ class Performers(Part):
                 wake()
 
     def _take_one(self, sample: Sample, waking: set[PerformerName]) -> None:
-        if sample.door == "headset":
+        if sample.door == "headset" or sample.is_late:
             return
-        wanted: list[tuple[str, SkeletonDefinition | None]]
-        if sample.door == "osc":
-            wanted = [("", None)] if any(one.kind == "bone" for one in sample.poses) else []
-        else:
-            sent = {one.tracker for one in sample.poses}
-            wanted = [
-                (one.name, one)
-                for one in sample.skeletons
-                if any(bone.tracker in sent for bone in one.bones)
-            ]
-        for skeleton, definition in wanted:
+        for skeleton, definition in skeletons_in(sample):
             name = PerformerName(sample.door, sample.source, skeleton)
             performer = self._performer(name, sample)
             if performer is None:

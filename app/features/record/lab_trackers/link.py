@@ -9,12 +9,14 @@ import threading
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Literal, cast
 
 import numpy as np
 
 from app.adapters.live import Pose
 from app.features.movement.live import Sample, SourceClock
+from app.features.record.lab_trackers.bones import WornBones
 from app.features.record.lab_trackers.worker_tasks import WatchStep
 from app.science.alignment import WINDOW_S, Watched
 from app.science.rotations import FloatArray
@@ -37,7 +39,8 @@ FOOT_LIMIT_M = 0.005
 _KEPT_S = WINDOW_S + 4.0
 _OTHER_CLOCK_S = 1.0
 _KINDS = frozenset({"tracker", "rigid_body", "headset", "controller"})
-"""What is somewhere in the room; bones are in their parent."""
+"""What is somewhere in the room; bones are in their parents, and put together (`WornBones`)."""
+NO_BONES: Mapping[str, str] = MappingProxyType({})
 _LATENCIES = 2048
 _MOST_OTHERS = 16
 _HALVES_S = 0.001
@@ -77,6 +80,8 @@ class TrackerLink:
         self._others: dict[str, float] = {}
         self._limbs: dict[str, str] = {}
         self._used: dict[str, str] = {}
+        self._bones = WornBones()
+        self._worn_bones: frozenset[str] = frozenset()
         self._address: str | None = None
         self._last_s = float("-inf")
         self._newest: dict[str, _Newest] = {}
@@ -101,10 +106,16 @@ class TrackerLink:
         """Return the name of the tracker on the head; None if no tracker is worn there."""
         return self._used.get(REFERENCE)
 
-    def wear(self, limbs: Mapping[str, str]) -> None:
-        """Take on which limb each tracker is worn; another one on the head starts anew."""
+    def wear(self, limbs: Mapping[str, str], bones: Mapping[str, str] = NO_BONES) -> None:
+        """Take on which limb each tracker is worn; another one on the head starts anew.
+
+        `bones`: the limbs of a suit's bones, which count where no tracker is worn.
+        """
+        taken = set(limbs.values())
+        used = {bone: limb for bone, limb in bones.items() if limb not in taken}
         with self._lock:
-            self._limbs = dict(sorted(limbs.items()))
+            self._worn_bones = frozenset(used)
+            self._limbs = dict(sorted({**used, **limbs}.items()))
             self._choose(self._last_s)
 
     def others(self, now_s: float) -> list[str]:
@@ -171,7 +182,7 @@ class TrackerLink:
             self._last_s = sample.arrival_s
             worn = [
                 self._completed(pose, sample)
-                for pose in sample.poses
+                for pose in (*sample.poses, *self._bones.of(sample, self._worn_bones))
                 if pose.tracker in self._limbs and pose.kind in _KINDS
             ]
             self._choose(sample.arrival_s)

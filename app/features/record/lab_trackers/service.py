@@ -17,6 +17,8 @@ from sqlalchemy.orm import Session
 
 from app.errors import NotFound
 from app.features.movement.live import LiveTracking, Sample, limbs_of
+from app.features.movement.performers import Performers
+from app.features.record.lab_trackers.bones import bone_limbs
 from app.features.record.lab_trackers.link import TrackerLink
 from app.features.record.lab_trackers.recording import (
     WaitingSamples,
@@ -91,7 +93,10 @@ class LabTrackers(Part):
         """Use the trackers that are chosen for a session now, or none."""
         with self._context.database.reading() as db:
             chosen = state_of(session_by_id(db, session_id)).trackers
-            limbs = {} if chosen is None else limbs_of(db, chosen.door, chosen.source)
+            limbs, bones = {}, {}
+            if chosen is not None:
+                limbs = limbs_of(db, chosen.door, chosen.source)
+                bones = bone_limbs(db, self._context.part(Performers), chosen.door, chosen.source)
         with self._lock:
             before = self._followed.get(session_id)
             if chosen is None:
@@ -107,9 +112,9 @@ class LabTrackers(Part):
                 if before is not None:
                     new.waiting, new.was_recording = before.waiting, before.was_recording
                 self._followed[session_id] = new
-                link.wear(limbs)
+                link.wear(limbs, bones)
             else:
-                before.link.wear(limbs)
+                before.link.wear(limbs, bones)
         self._wake(session_id)
 
     def followed(self, session_id: str) -> Followed | None:
@@ -154,7 +159,7 @@ class LabTrackers(Part):
             if not own:
                 continue
             one.waiting.add(own)
-            moved = [one.link.take(each) for each in own]
+            moved = [one.link.take(each) for each in own if not each.is_late]
             if any(moved):
                 self._wake(one.session_id)
 

@@ -4,13 +4,21 @@ import json
 import socket
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.adapters.live import DATA_PORT, connect_request, keep_alive, model_request
+from app.adapters.live import (
+    DATA_PORT,
+    OscTrackers,
+    connect_request,
+    keep_alive,
+    model_request,
+)
 from app.features.movement.live.natnet_link import ASK_EVERY_S, LOST_S, NatNetLink
 from tests.adapters.live.packets import bundle, definitions, frame, server_info, vmc
+from tests.adapters.live.test_fuzzed_packets import packets
 from tests.features.lab import Json, Lab, error, ok
 from tests.support.datagrams import HERE, free_udp_port, sender
 
@@ -88,6 +96,23 @@ def test_a_door_on_a_port_in_use_says_so_and_opens_when_it_is_free(open_lab: Lab
         assert door["state"] == "failed"
         assert door["trouble"] == "port_in_use"
     shown(open_lab, lambda view: view["doors"][2]["state"] == "open")
+
+
+def test_damaged_packets_are_counted_on_the_page(open_lab: Lab) -> None:
+    """Of 300 damaged packets every problem that the decoder names is counted, by kind."""
+    port = free_udp_port()
+    open_door(open_lab, "osc", port=port)
+    sent = [vmc("LHR-1"), *packets("osc", 300, seed=5)]
+    decoder, expected = OscTrackers(), Counter[str]()
+    for packet in sent:
+        expected += decoder.read(packet).problems
+    with sender(port) as send:
+        for packet in sent:
+            send(packet)
+    view = shown(open_lab, lambda one: _packets(one) == len(sent))
+    counted = sum((Counter(one["problems"]) for one in view["sources"]), Counter[str]())
+    assert counted == expected
+    assert counted["malformed"] > 10
 
 
 def test_two_scripts_of_one_name_and_a_limb(open_lab: Lab) -> None:

@@ -63,15 +63,18 @@ def test_a_clock_is_mapped_by_its_least_delayed_packets() -> None:
 
 
 def test_doubled_late_and_skipped_packets_are_counted_and_change_nothing() -> None:
-    """Frames 1 2 2 5 3 4 6: one doubled, two late, two skipped; the newest pose stays."""
+    """Frames 1 2 2 5 3 4 6: one doubled, two late, two skipped; the newest pose stays.
+
+    What came late is for the record, and marked.
+    """
     sources = Sources()
     taken = [
-        number
+        (number, sample.is_late)
         for at, number in enumerate((1, 2, 2, 5, 3, 4, 6))
-        if sources.note("json", HERE, reading("foot", name="a", frame=number), at / 100)
+        if (sample := sources.note("json", HERE, reading("foot", name="a", frame=number), at / 100))
     ]
     source = only(sources, 0.1)
-    assert taken == [1, 2, 5, 6]
+    assert taken == [(1, False), (2, False), (5, False), (3, True), (4, True), (6, False)]
     assert (source.doubled, source.late, source.skipped, source.restarts) == (1, 2, 2, 0)
     assert source.trackers["foot"].samples == 4
 

@@ -17,7 +17,6 @@ from app.models import TrackerAlignment, TrackerChunk
 from app.science.alignment import PoseStream
 from app.science.rotations import identity
 from tests.features.lab import Json, error, ok
-from tests.features.record.headset.conftest import running_site
 from tests.features.record.headset.site import SUBPROTOCOL, Site
 from tests.features.record.headset.streaming import materialised
 from tests.science.alignment.rooms import (
@@ -32,13 +31,6 @@ from tests.support.beside import beside
 from tests.support.datagrams import HERE, free_udp_port, sender
 
 SECONDS = 60.0
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    """A server; one engine is enough, since the queries are plain."""
-    with running_site("sqlite", tmp_path_factory.mktemp("trackers"), {}) as site:
-        yield site
 
 
 class SimulatedRoom:
