@@ -26,6 +26,8 @@ from app.science.cosimulation.states import State
 
 KERB_ZONE_M = 1.5
 """Somebody who stands closer to the kerb waits to cross."""
+SWAY_M = 0.15
+"""Somebody who stands sways; only who is this far past a kerb's edge has stepped over it."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,8 @@ class Crossing:
 
     Attributes:
         person: name of the actor.
-        steps_on_s, steps_off_s: first time on the carriageway, first time behind a kerb again.
+        steps_on_s, steps_off_s: stepping onto the carriageway, and behind a kerb again: the last
+            times over its edge before they were clearly past it (`SWAY_M`).
         is_across: whether that was the other kerb; false if they turned back or are still on it.
         waited_s: see the module.
         gap_accepted_s: None if no car was coming, or nobody stepped onto the carriageway.
@@ -83,30 +86,49 @@ def crossings_of(record: Record, road: Road, name: str) -> tuple[Crossing, ...]:
     """Return the crossings of one person one after the other.
 
     Each begins where the one before ended, that is with the first step behind a kerb; somebody who
-    turns back ends one without being across. A last one without a step onto the carriageway is
-    left out, unless it is the only one.
+    turns back ends one without being across. Who only sways over a kerb's edge has done neither.
+    A last one without a step onto the carriageway is left out, unless it is the only one.
     """
     found: list[Crossing] = []
     frames: list[Frame] = []
-    was_on = False
+    has_stepped_on = False
     for frame in _frames(record, name):
         frames.append(frame)
-        is_on = road.is_on_carriageway(frame[0])
-        if was_on and not is_on:
+        past_m = _past_kerb_m(frame[0], road)
+        if has_stepped_on and past_m > SWAY_M:
             found.append(_crossing(frames, road, name, record.step_s))
             frames = [frame]
-        was_on = is_on
-    if was_on or (frames and not found):
+        has_stepped_on = past_m < -SWAY_M or (has_stepped_on and past_m <= SWAY_M)
+    if has_stepped_on or (frames and not found):
         found.append(_crossing(frames, road, name, record.step_s))
     return tuple(found)
 
 
+def _past_kerb_m(own: State, road: Road) -> float:
+    """Return how far somebody is behind the nearer kerb's edge; negative on the carriageway."""
+    return abs(own.y_m) - road.lane_width_m
+
+
+def _stepped(frames: list[Frame], road: Road) -> tuple[int | None, int | None]:
+    """Return at which frame a person stepped onto the carriageway, and at which off it again.
+
+    These are the last times over the edge before they were clearly past it.
+    """
+    past_m = [_past_kerb_m(own, road) for own, _ in frames]
+    ons = [at for at, past in enumerate(past_m) if past < 0.0 and (at == 0 or past_m[at - 1] >= 0)]
+    if not ons:
+        return None, None
+    deep = next((at for at, past in enumerate(past_m) if past < -SWAY_M), None)
+    on = ons[0] if deep is None else max(at for at in ons if at <= deep)
+    begun = range((on if deep is None else deep) + 1, len(frames))
+    gone = next((at for at in begun if past_m[at] > SWAY_M), len(frames) - 1)
+    if past_m[gone] < 0.0:
+        return on, None
+    return on, max(at for at in range(on + 1, gone + 1) if past_m[at] >= 0.0 > past_m[at - 1])
+
+
 def _crossing(frames: list[Frame], road: Road, name: str, step_s: float) -> Crossing:
-    on = next((at for at, (own, _) in enumerate(frames) if road.is_on_carriageway(own)), None)
-    ends = range(len(frames)) if on is None else range(on, len(frames))
-    off = None
-    if on is not None:
-        off = next((at for at in ends if not road.is_on_carriageway(frames[at][0])), None)
+    on, off = _stepped(frames, road)
     before = frames[: len(frames) if on is None else on]
     waits = [
         abs(own.y_m) <= road.lane_width_m + KERB_ZONE_M and own.speed_m_s < STOPPED_M_S

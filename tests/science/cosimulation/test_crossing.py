@@ -23,6 +23,7 @@ from app.science.cosimulation import (
     Walker,
     WalkerPlan,
     crossings,
+    crossings_of,
 )
 from app.science.cosimulation.cars import commanded_m_s2
 from app.science.walking.records import PlannedPath
@@ -146,6 +147,18 @@ def test_margins_are_those_worked_out_by_hand() -> None:
     # At 1 m/s the person is out of the car's way before it comes: no collision course at all.
     assert found.least_time_to_collision_s is None
     assert found.collision is None
+
+
+def test_who_sways_at_the_kerb_steps_over_it_once() -> None:
+    """Kerbs are at 3.2 m: 5 cm over the edge and back is no crossing, neither before nor after."""
+    sways = (-4.0, -3.15, -3.25, -3.1, 0.0, 3.15, 3.25, 3.15, 3.3, 3.5, 3.15, 3.3, 3.5)
+    frames = [(_at(_person(0.0, y_m), 0.5 * number),) for number, y_m in enumerate(sways)]
+    (found,) = crossings_of(_record(*frames), STREET, "p")
+    # The last steps over the edges before the person was clearly past them.
+    assert (found.steps_on_s, found.steps_off_s, found.is_across) == (1.5, 4.0, True)
+    turned = [(_at(_person(0.0, y_m), 0.5 * n),) for n, y_m in enumerate((-4, -2.9, -3.3, -4))]
+    (back,) = crossings_of(_record(*turned), STREET, "p")
+    assert (back.steps_on_s, back.steps_off_s, back.is_across) == (0.5, 1.0, False)
 
 
 def test_a_collision_is_found_with_its_speed() -> None:

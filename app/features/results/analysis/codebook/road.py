@@ -20,13 +20,13 @@ ROAD_CROSSINGS: tuple[Column, ...] = (
     _R.integer("number", "Which crossing of the run.", levels="1 and up"),
     _R.number(
         "steps_on_s",
-        "First time on the carriageway, in active time of the phase; empty if never.",
+        "When they stepped onto the carriageway, in active time of the phase; empty if never.",
         "s",
         "0 and up",
     ),
     _R.number(
         "steps_off_s",
-        "First time behind a kerb again, in active time; empty if the run ended before.",
+        "When they stepped behind a kerb again, in active time; empty if the run ended before.",
         "s",
         "0 and up",
     ),
