@@ -75,8 +75,8 @@ MEASURES = (
         "Collisions by added latency",
         "collisions (per crossing)",
         "per crossing",
-        "Share of the times on the carriageway in which a car hit the participant, also of those "
-        "in which they turned back.",
+        "Share of the crossings in which a car hit the participant; those that were broken off by "
+        "turning back count, too.",
         gone_too=True,
     ),
 )
@@ -101,7 +101,8 @@ def _drawing(measure: Measure, rows: pd.DataFrame) -> Drawing:
     numbers = rows.astype({measure.column: "float64"}).assign(limb=ROAD)
     values = per_participant(numbers, measure.column)
     figure = latency_figure(values, axis=measure.axis, unit=measure.unit)
-    figure.update_yaxes(rangemode="tozero")
+    # The interval of a share may reach below 0, the share cannot.
+    figure.update_yaxes(rangemode="nonnegative" if measure.gone_too else "tozero")
     caption = f"{words} {count_note(n)} {len(rows)} crossings."
     data = drawn_rows(values, measure.unit).drop(columns="limb")
     return drawn(key, measure.title, caption, n, figure, data)

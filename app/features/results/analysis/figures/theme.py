@@ -5,6 +5,7 @@ light background. Whatever a colour shows is also shown by a shape, a dash or a 
 """
 
 import copy
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -137,12 +138,17 @@ def label_line_ends(figure: go.Figure, ends: Sequence[LineEnd], *, top: float, c
 
 
 def latency_axis(figure: go.Figure, latencies_ms: list[float]) -> None:
-    """Label the x axes with the study's latencies, with a margin at both ends."""
+    """Label the x axes with the study's latencies, with a margin at both ends.
+
+    The right one has room for the shape beside the last latency, as wide as the gaps allow.
+    """
     room = 0.08 * (latencies_ms[-1] - latencies_ms[0]) or 10.0
+    gap = min((b - a for a, b in itertools.pairwise(latencies_ms)), default=0.0)
+    beyond = max(1.6 * room, 0.25 * gap)
     figure.update_xaxes(
         title_text="added latency (ms)",
         tickvals=latencies_ms,
         ticktext=[f"{latency:g}" for latency in latencies_ms],
-        range=[latencies_ms[0] - room, latencies_ms[-1] + 1.6 * room],
+        range=[latencies_ms[0] - room, latencies_ms[-1] + beyond],
         zeroline=False,
     )
