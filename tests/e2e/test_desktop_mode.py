@@ -11,7 +11,10 @@ from tests.e2e.people import PATIENCE_MS, PICTURE_HIDDEN, Experimenter
 from tests.e2e.test_first_study import STUDY, short_study
 from tests.features.lab import ok
 from tests.features.record.headset.site import Site
-from tests.support.acting_on_screen import act_on_this_screen
+from tests.rehearsal.test_road import short_study as short_road
+from tests.support.acting_on_screen import act_on_this_screen, until
+
+TEST_SESSION = {"kind": "test", "language": "en"}
 
 
 def test_the_study_is_acted_on_this_screen_after_one_click(
@@ -79,3 +82,75 @@ def test_two_clicks_lead_from_the_first_page_into_a_body(
         begun = ok(headset_site.operator.get(f"/api/sessions/{session_id}"))["current"]
     # A screen that draws too slowly pauses what has begun.
     assert begun["status"] in ("preparing", "running", "paused")
+
+
+def test_one_person_alone_crosses_the_road_there_and_back(
+    headset_site: Site,
+    page_factory: Callable[..., Page],
+    screenshot: Callable[[Page, str], object],
+) -> None:
+    """W leads across the road and S back, without a headset; both crossings are measured.
+
+    On a busy machine pictures come so late that the clock pauses, as in a headset that sleeps; the
+    experimenter then resumes.
+    """
+    yaml = short_road().replace("key: road-short", "key: road-desk", 1)
+    yaml = yaml.replace("crossings: 1", "crossings: 2", 1)
+    ok(headset_site.operator.post("/api/studies", json={"yaml": yaml}))
+    session = ok(headset_site.operator.post("/api/studies/road-desk/sessions", json=TEST_SESSION))
+    page = page_factory((1280, 800))
+    page.add_init_script(PICTURE_HIDDEN)
+    Experimenter(page, headset_site.server.url).log_in()
+    page.goto(f"{headset_site.server.url}/#/sessions/{session['id']}")
+    with page.expect_popup() as opened:
+        page.get_by_role("button", name="Act on this screen").click(timeout=PATIENCE_MS)
+    desk = opened.value
+    until(desk, "globalThis.reembody?.frames > 2")
+    # Software rendering is slower than a screen may be.
+    desk.evaluate("reembody.isRendering = false")
+    headset_site.skip_to(session["id"], "materialise")
+    until(desk, "reembody.place === 'stepping_in'")
+    desk.keyboard.down("Space")
+    until(desk, "reembody.place === 'acting'")
+    desk.keyboard.up("Space")
+    view = headset_site.view(session["id"])
+    while view["steps"][view["current"]["index"]]["kind"] != "road_crossing":
+        view = headset_site.command(session["id"], "skip", reason="not in this test")
+    headset_site.command(session["id"], "begin_phase")
+    until(desk, "reembody.run?.clockRuns === true")
+    for crossed in (1, 2):
+        _cross(desk, headset_site, session["id"], crossed)
+        desk.evaluate("reembody.isRendering = true")
+        screenshot(desk, f"desk-road-{crossed}")
+        desk.evaluate("reembody.isRendering = false")
+    until(desk, "reembody.run === null")
+    road = ok(headset_site.operator.get(f"/api/sessions/{session['id']}/road"))
+    assert [one["is_across"] for run in road["runs"] for one in run["crossings"]] == [True, True]
+
+
+PLACE = """() => ({
+    crossed: reembody.run?.completed ?? Infinity,
+    isPaused: reembody.run?.isPaused ?? false,
+    zM: reembody.computed.remote[2],
+})"""
+MIDDLE_Z_M = -3.3
+
+
+def _cross(desk: Page, site: Site, session_id: str, crossed: int) -> None:
+    """Hold the key that leads to the other side until so many crossings are done."""
+    place = desk.evaluate(PLACE)
+    key = "KeyW" if place["zM"] > MIDDLE_Z_M else "KeyS"
+    until_s = time.monotonic() + 3 * PATIENCE_MS / 1000
+    desk.keyboard.down(key)
+    while place["crossed"] < crossed:
+        assert time.monotonic() < until_s, place
+        if place["isPaused"]:
+            desk.keyboard.up(key)
+            current = site.view(session_id)["current"]
+            if current["status"] == "paused" and not current["resuming"]:
+                site.command(session_id, "resume")
+        else:
+            desk.keyboard.down(key)
+        desk.wait_for_timeout(200)
+        place = desk.evaluate(PLACE)
+    desk.keyboard.up(key)

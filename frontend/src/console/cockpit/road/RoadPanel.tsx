@@ -8,7 +8,6 @@ import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { sessionRoadQuery } from "../../queries";
-import { ScrollBox } from "../../ui/tables";
 import cockpit from "../Cockpit.module.css";
 import panels from "../Panels.module.css";
 import classes from "./RoadPanel.module.css";
@@ -68,24 +67,12 @@ interface RunsProps {
 }
 
 function Runs({ session, runs }: RunsProps): JSX.Element {
-  const { t } = useTexts();
   return (
-    <ScrollBox label={t("road.crossings")}>
-      <table className={`${classes.table} numbers`}>
-        <thead>
-          <tr>
-            <th scope="col">{t("road.crossing")}</th>
-            <th scope="col">{t("road.waited")}</th>
-            <th scope="col">{t("road.gap")}</th>
-            <th scope="col">{t("road.refused")}</th>
-            <th scope="col">{t("road.closest")}</th>
-          </tr>
-        </thead>
-        {runs.map((run) => (
-          <Run key={run.id} session={session} run={run} />
-        ))}
-      </table>
-    </ScrollBox>
+    <>
+      {runs.map((run) => (
+        <Run key={run.id} session={session} run={run} />
+      ))}
+    </>
   );
 }
 
@@ -103,52 +90,53 @@ function Run({ session, run }: { readonly session: SessionView; readonly run: Ro
   const done = run.crossings.filter(({ steps_on_s }) => steps_on_s !== null);
   const file = `road_${run.phase_id}_${run.part}.jsonl`;
   return (
-    <tbody>
-      <tr className={classes.run}>
-        <th scope="rowgroup" colSpan={4}>
-          {name.filter((part) => part !== null).join(" · ")}
-        </th>
-        <td>
-          <a href={roadRecordOf(session.id, run.id)} download={file} title={file}>
-            {t("road.record")}
-          </a>
-        </td>
-      </tr>
-      {done.map((one) => (
-        <CrossingRow key={one.number} one={one} />
-      ))}
-      {done.length === 0 && run.ended !== "running" && (
-        <tr>
-          <td colSpan={5} className={classes.none}>
-            {t("road.noCrossing")}
-          </td>
-        </tr>
+    <div className={classes.run}>
+      <div className={classes.name}>
+        <h3>{name.filter((part) => part !== null).join(" · ")}</h3>
+        <a href={roadRecordOf(session.id, run.id)} download={file} title={file}>
+          {t("road.record")}
+        </a>
+      </div>
+      {done.length > 0 && (
+        <ol className={classes.crossings}>
+          {done.map((one) => (
+            <li key={one.number} aria-label={t("road.crossing", { number: one.number })}>
+              <Measures one={one} />
+            </li>
+          ))}
+        </ol>
       )}
-    </tbody>
+      {done.length === 0 && run.ended !== "running" && (
+        <p className={classes.none}>{t("road.noCrossing")}</p>
+      )}
+    </div>
   );
 }
 
-function CrossingRow({ one }: { readonly one: Crossing }): JSX.Element {
+function Measures({ one }: { readonly one: Crossing }): JSX.Element {
   const { t, language } = useTexts();
-  const shown = (value: number) => decimals(value, language, 1);
+  const shown = (value: number, unit: string) => `${decimals(value, language, 1)} ${unit}`;
+  const { gap_accepted_s: gapS, closest_m: closestM } = one;
   const isTurned = one.steps_off_s !== null && !one.is_across;
   return (
-    <tr>
-      <th scope="row">
-        {one.number}
-        {isTurned && ` ${t("road.turned")}`}
-      </th>
-      <td>{shown(one.waited_s)}</td>
-      <td>{one.gap_accepted_s === null ? t("road.none") : shown(one.gap_accepted_s)}</td>
-      <td>{one.gaps_refused_s.length}</td>
-      {one.collision_car === null ? (
-        <td>{one.closest_m === null ? "–" : shown(one.closest_m)}</td>
-      ) : (
-        <td className={classes.hit}>
+    <>
+      <dl className={`${classes.measures} numbers`}>
+        <dt>{t("road.waited")}</dt>
+        <dd>{shown(one.waited_s, "s")}</dd>
+        <dt>{t("road.refused")}</dt>
+        <dd>{one.gaps_refused_s.length}</dd>
+        <dt>{t("road.gap")}</dt>
+        <dd>{gapS === null ? t("road.none") : shown(gapS, "s")}</dd>
+        <dt>{t("road.closest")}</dt>
+        <dd>{closestM === null ? t("road.none") : shown(closestM, "m")}</dd>
+      </dl>
+      {isTurned && <p className={classes.none}>{t("road.turned")}</p>}
+      {one.collision_car !== null && (
+        <p className={classes.hit}>
           <Icon name="alert" size={14} />{" "}
-          {t("road.collision", { speed: shown(one.collision_speed_m_s ?? 0) })}
-        </td>
+          {t("road.collision", { speed: decimals(one.collision_speed_m_s ?? 0, language, 1) })}
+        </p>
       )}
-    </tr>
+    </>
   );
 }

@@ -114,7 +114,8 @@ function StepPosition({ session, step }: { readonly session: SessionView; readon
   } else if (step.block !== null) parts.push(t("step.latencyHidden"));
   if (step.body !== null) parts.push(t("overview.body", { body: step.body }));
   if (step.until_completions != null) {
-    parts.push(t("practice.until", { count: step.until_completions }));
+    const until = step.kind === "road_crossing" ? "road.until" : "practice.until";
+    parts.push(t(until, { count: step.until_completions }));
   }
   if (step.avatar_changes != null) {
     const words = changeWords(texts, step.avatar_changes).join(" · ");

@@ -75,7 +75,8 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
  */
 function stateKey(current: Current): Key {
   if (current.pausing) return "phase.pausing";
-  return current.resuming ? "phase.resuming" : `phase.${current.status}`;
+  if (!current.resuming) return `phase.${current.status}`;
+  return current.pause_reason === "road" ? "road.resuming" : "phase.resuming";
 }
 
 interface ProgressProps {
