@@ -35,7 +35,7 @@ from tests.protocol.helpers import SHIPPED, loaded
 from tests.support.acting_on_screen import act_on_this_screen
 from tests.support.bodies_page import frame_times, shipped_avatar
 from tests.support.browser import launched_browser
-from tests.support.room import EVERYTHING, MOMENTS, PAUSED, Drawn, opened_room
+from tests.support.room import ACCOMPANIED, EVERYTHING, MOMENTS, PAUSED, Drawn, opened_room
 from tests.support.server import LiveServer
 from tests.support.vr_rules import Outcome, derived, stored
 from tests.support.vr_visit import FRAME_RATE_HZ, QUICK, Json, begun, journey_script, ok
@@ -332,6 +332,7 @@ def _mirror(browser: Browser, folder: Path) -> tuple[Figure, ...]:
         full = room.draw_fading(EVERYTHING)
         without = room.draw_fading({**EVERYTHING, "panel": None})
         stopping = room.draw_fading({**EVERYTHING, "panel": "stopping"})
+        beside = room.draw_fading(ACCOMPANIED)
         paused = room.draw_fading(PAUSED)
     pictures: dict[str, Drawn] = {}
     for mirror in ("double", "reflector"):
@@ -349,6 +350,14 @@ def _mirror(browser: Browser, folder: Path) -> tuple[Figure, ...]:
         Figure(part, "with a panel pointed at", full.calls, "", "at most", CALLS_LIMIT),
         Figure(
             part, "with a panel and a stop on its way", stopping.calls, "", "at most", CALLS_LIMIT
+        ),
+        Figure(
+            part,
+            "in the body, with all this and a companion",
+            beside.calls,
+            "",
+            "at most",
+            CALLS_LIMIT,
         ),
         Figure(part, "in the pause room", paused.calls, "", "at most", CALLS_LIMIT),
         Figure(part, "triangles of an eye", full.triangles, "", "at most", TRIANGLES_LIMIT),

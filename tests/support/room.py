@@ -116,11 +116,18 @@ EVERYTHING: Moment = {
     "controllers": True,
     "isBoundarySmall": True,
     "isCurtainDrawn": True,
-    "companionAtM": [1.55, 0, -0.9],
     "frames": 9,
     "panel": "question",
 }
 """All that can be seen at once, with a panel that is pointed at; more than a visit ever shows."""
+ACCOMPANIED: Moment = {
+    **EVERYTHING,
+    "visible": visible("hand", "foot", local=True, remote=True),
+    "controllers": False,
+    "companionAtM": [1.55, 0, -0.9],
+    "panel": "stopping",
+}
+"""All that can be seen at once beside a companion, who is there in the body only."""
 PAUSED: Moment = {**EVERYTHING, "panel": "pause", "frames": 60}
 """The pause room, when the room has given way to it."""
 IN_FRONT: Moment = {

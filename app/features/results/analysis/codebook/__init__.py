@@ -13,7 +13,7 @@ from app.features.results.analysis.codebook.book import (
     data_dictionary,
 )
 from app.features.results.analysis.codebook.column import Column, ColumnType
-from app.features.results.analysis.codebook.companions import COMPANION_POSE
+from app.features.results.analysis.codebook.trackers import COMPANION_POSE
 
 __all__ = [
     "CODEBOOK",

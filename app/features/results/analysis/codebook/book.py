@@ -6,7 +6,6 @@ from dataclasses import asdict, replace
 import pandas as pd
 
 from app.features.results.analysis.codebook.column import Column, Describe
-from app.features.results.analysis.codebook.companions import COMPANION_FRAMES
 from app.features.results.analysis.codebook.equipment import (
     CALIBRATIONS,
     CLOCK_MAPPING,
@@ -27,7 +26,11 @@ from app.features.results.analysis.codebook.quality import ALARMS, DOUBTS, QUALI
 from app.features.results.analysis.codebook.questionnaires import ANSWERS, CORRECTIONS, SCORES
 from app.features.results.analysis.codebook.road import ROAD_CROSSINGS
 from app.features.results.analysis.codebook.sessions import EVENTS, PHASES, SESSIONS
-from app.features.results.analysis.codebook.trackers import TRACKER_ALIGNMENTS, TRACKER_SAMPLES
+from app.features.results.analysis.codebook.trackers import (
+    COMPANION_FRAMES,
+    TRACKER_ALIGNMENTS,
+    TRACKER_SAMPLES,
+)
 from app.features.results.analysis.codebook.wide import WIDE, WIDE_COLUMNS
 from app.science.skeleton import FINGER_PARTS, JOINT_NAMES
 
