@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from app.science.instruments import Instrument, Item
+from app.science.instruments import Instrument, Item, Scale
 from app.science.statistics import Explored, explore
 
 KEY = "demographics"
 """The measure of the statistics page that has the table of these relations."""
+MOST_STEPS = 9
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,13 +23,13 @@ class Variable:
     """One answer about the participants, outside the blocks.
 
     `values`: by participant code, numbers (NaN where missing) or words (None where missing).
-    `ends`: what the ends of its scale mean. `words`: of categories, the answers in the item's
-    order.
+    `steps`: the labels of a scale's steps, by value. `words`: of categories, the answers in the
+    item's order.
     """
 
     name: str
     unit: str
-    ends: str
+    steps: Mapping[float, str]
     values: "pd.Series[float] | pd.Series[str]"
     words: tuple[str, ...] = ()
 
@@ -91,13 +92,20 @@ def _variable(instrument: Instrument, item: Item, given: pd.DataFrame) -> Variab
         labels = {one.key: one.key.replace("_", " ") for one in item.choices}
         values = given["value_text"].map(labels)
         words = [label for label in labels.values() if (values == label).any()]
-        return Variable(name, unit, "", values, tuple(words) or ("",))
+        return Variable(name, unit, {}, values, tuple(words) or ("",))
     if item.type == "boolean":
         values = given["value_number"].map({0.0: "no", 1.0: "yes"})
-        return Variable(name, unit, "", values, ("no", "yes"))
+        return Variable(name, unit, {}, values, ("no", "yes"))
     scale = instrument.scale_of(item)
-    ends = ""
-    if scale is not None and scale.labels:
-        low, high = (label.get("en", "") for label in (scale.labels[0], scale.labels[-1]))
-        ends = f"{scale.minimum} {low} – {scale.maximum} {high}"
-    return Variable(name, unit, ends, given["value_number"].astype("float64"))
+    steps = {} if scale is None else _steps(scale)
+    return Variable(name, unit, steps, given["value_number"].astype("float64"))
+
+
+def _steps(scale: Scale) -> dict[float, str]:
+    """Return the label of every step of a short scale, with the meaning of its ends."""
+    steps = scale.steps if len(scale.steps) <= MOST_STEPS else (scale.minimum, scale.maximum)
+    labels = {float(step): str(step) for step in steps}
+    if scale.labels:
+        for end, label in ((scale.minimum, scale.labels[0]), (scale.maximum, scale.labels[-1])):
+            labels[float(end)] = f"{end}<br>{label.get('en', '')}"
+    return labels

@@ -47,13 +47,13 @@ export function ConventionsPanel({ capture, motion }: ConventionsPanelProps): JS
             {conventions[name].value} <OriginMark origin={conventions[name].origin} />
           </Fact>
         ))}
-        {size !== null && (
-          <Fact name={t("conventions.size")}>
-            <span className="numbers" title={t("conventions.size.hint")}>
-              {t("conventions.size.value", { width: side(0), depth: side(2), height: side(1) })}
-            </span>
-          </Fact>
-        )}
+        <Fact name={t("conventions.size")}>
+          <span className="numbers" title={t("conventions.size.hint")}>
+            {size === null
+              ? "…"
+              : t("conventions.size.value", { width: side(0), depth: side(2), height: side(1) })}
+          </span>
+        </Fact>
         {observed < 1 && (
           <Fact name={t("conventions.observed")}>
             {t("conventions.observed.value", { percent: number(100 * observed, language, 1) })}

@@ -37,7 +37,7 @@ export function MovementTab({ capture, map }: TabProps): JSX.Element {
           </Viewer>
         ) : (
           error === null && (
-            <Center mih={360}>
+            <Center className={classes.waiting ?? ""}>
               <Loader />
             </Center>
           )

@@ -69,9 +69,16 @@ def test_every_participant_is_a_point_at_the_mean_of_their_score() -> None:
     figure = _figure(drawing)
     (points,) = figure["data"]
     assert (points["x"], points["y"]) == (list(AGES.values()), list(SCORES.values()))
-    assert figure["layout"]["xaxis"]["title"]["text"] == "years"
-    assert figure["layout"]["annotations"][0]["text"] == "age, n = 4, ρ = 1.00"
+    assert figure["layout"]["annotations"][0]["text"] == "age (years)<br>n = 4, ρ = 1.00"
     assert (drawing.n, drawing.group, drawing.measure) == (4, "demographics", "demographics")
+
+
+def test_the_ends_of_a_scale_say_what_they_mean() -> None:
+    """A rating has a tick for each step of its scale, with the meaning of both ends."""
+    rated = _answers("vr_familiarity", "likert", {"P-1": 1.0, "P-2": 2.0, "P-3": 4.0, "P-4": 5.0})
+    axis = _figure(_agency(rated))["layout"]["xaxis"]
+    assert axis["tickvals"] == [1, 2, 3, 4, 5]
+    assert axis["ticktext"] == ["1<br>none", "2", "3", "4", "5<br>very good"]
 
 
 def test_categories_say_how_many_chose_them_and_have_medians() -> None:

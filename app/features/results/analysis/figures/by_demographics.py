@@ -35,7 +35,7 @@ WHAT = (
     "Wallis. Exploratory: among so many panels one looks striking by chance."
 )
 COLUMNS = 2
-_PANEL_PX, _FOOT_PX = 165, 40
+_PANEL_PX, _FOOT_PX = 170, 30
 _FEWEST_FOR_A_MEDIAN = 3
 _WORD_CHARACTERS = 12
 _SIDEWAYS = 0.09
@@ -93,7 +93,7 @@ def _figure(
         titles=tuple(titles),
         shared_yaxes=True,
         horizontal_spacing=0.06,
-        vertical_spacing=0.42 / rows,
+        vertical_spacing=0.44 / rows,
     )
     for at, variable in enumerate(shown):
         place = {"row": 1 + at // COLUMNS, "col": 1 + at % COLUMNS}
@@ -103,14 +103,16 @@ def _figure(
         if at % COLUMNS == 0:
             figure.update_yaxes(title_text="points", title_font_size=12, **place)
     figure.update_annotations(font_size=12)
-    figure.update_layout(showlegend=False, height=rows * _PANEL_PX + _FOOT_PX, margin={"b": 44})
+    figure.update_layout(
+        showlegend=False, height=rows * _PANEL_PX + _FOOT_PX, margin={"t": 44, "b": 44}
+    )
     return figure
 
 
 def _panel_title(variable: Variable, found: Explored) -> str:
-    """Return the variable, how many answered, and the effect."""
+    """Return the variable with its unit, and below how many answered and the effect."""
     effect = "" if found.why_not else f", {_effect_name(found)} = {_effect(found.effect)}"
-    return f"{variable.name}, n = {found.n}{effect}"
+    return f"{variable.heading}<br>n = {found.n}{effect}"
 
 
 def _effect_name(found: Explored) -> str:
@@ -124,7 +126,8 @@ def _effect(value: float) -> str:
 
 def _x_axis(variable: Variable) -> dict[str, object]:
     if variable.is_number:
-        return {"title_text": variable.unit or variable.ends, "title_font_size": 12}
+        steps = variable.steps
+        return {"tickvals": list(steps), "ticktext": list(steps.values())} if steps else {}
     counts = variable.values.value_counts()
     return {
         "tickvals": list(range(len(variable.words))),

@@ -149,7 +149,18 @@ function EffectMark({
           vectorEffect="non-scaling-stroke"
         />
       )}
-      <ellipse cx={x(size)} cy={middle} rx={4} ry={5} className={classes.point} />
+      {/* Ends of lines, which stay round however wide the column is. */}
+      {([classes.halo, classes.point] as const).map((look) => (
+        <line
+          key={look}
+          x1={x(size)}
+          x2={x(size)}
+          y1={middle}
+          y2={middle}
+          className={look}
+          vectorEffect="non-scaling-stroke"
+        />
+      ))}
     </svg>
   );
 }

@@ -98,13 +98,13 @@ function Study({ study, section }: StudyProps): JSX.Element {
   const isTheirs = role !== undefined && isAllowed(section, role);
   const Content = isTheirs ? CONTENT[section.section] : NoPermission;
   return (
-    <>
+    <div data-page={section.section === "dashboard" ? "wide" : undefined}>
       <Head study={study} section={section} />
       {study.archived_at !== null && <Archived studyKey={study.key} />}
       <Suspense fallback={<Waiting />}>
         <Content study={study} />
       </Suspense>
-    </>
+    </div>
   );
 }
 
