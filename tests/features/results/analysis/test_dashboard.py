@@ -39,6 +39,10 @@ KEYS = [
     "joint_error_blocks",
     "joint_error_course",
     "joint_error_joints",
+    "demographics_ownership",
+    "demographics_agency",
+    "demographics_location",
+    "demographics_soe_thesis",
     "quality",
     "exclusions",
     "alarms",
@@ -47,7 +51,7 @@ KEYS = [
 ]
 NEEDS_MOVEMENT = ("achieved_latency", "quality", "alarms")
 """Figures of what is computed from recorded movement, which built sessions have none of."""
-COUNTING = KEYS[:16]
+COUNTING = KEYS[:20]
 """Figures of rows that count; the others show what does not, too."""
 
 

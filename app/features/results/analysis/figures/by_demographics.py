@@ -48,38 +48,26 @@ def demographics_drawings(
     instruments: Mapping[tuple[str, int], Instrument],
 ) -> Iterator[Drawing]:
     """Yield one drawing per embodiment component, from valid rows of scores and answers."""
-    found = list(_drawings(scores, answers, instruments))
-    if not found:
-        key, title = "demographics", "Scores by demographics"
-        what = "both a score and an answer about themselves that differs from another's"
-        found = [too_few(key, title, WHAT, 0, what)]
-    yield from (one.of_group("demographics") for one in found)
-
-
-def _drawings(
-    scores: pd.DataFrame,
-    answers: pd.DataFrame,
-    instruments: Mapping[tuple[str, int], Instrument],
-) -> Iterator[Drawing]:
-    for score, (title, _) in COMPONENTS.items():
+    for score, (name, _) in COMPONENTS.items():
         rows = scores[scores["score"] == score].dropna(subset=["limb", "value"])
         means = per_participant(rows, "value").groupby("participant_code")["value"].mean()
         variables = variables_of(answers, list(means.index), instruments)
-        shown = [one for one in variables if one.differs]
-        if not shown:
-            continue
-        found = {one.variable: one for one in relations_of(means, variables)}
-        alike = ", ".join(one.name for one in variables if not one.differs)
-        same = f"The same for everybody, so not drawn: {alike}." if alike else ""
-        n = len(means)
-        yield drawn(
-            f"demographics_{score}",
-            f"{title} by demographics",
-            f"{WHAT} {count_note(n)} {same}",
-            n,
-            _figure(shown, means, found),
-            _rows(shown, means, found),
-        ).tested_as(KEY)
+        drawing = _drawing(f"demographics_{score}", f"{name} by demographics", means, variables)
+        yield drawing.of_group("demographics")
+
+
+def _drawing(
+    key: str, title: str, means: "pd.Series[float]", variables: Sequence[Variable]
+) -> Drawing:
+    n = len(means)
+    shown = [one for one in variables if one.differs]
+    if not shown:
+        return too_few(key, title, WHAT, n, "an answer that differs from another's")
+    found = {one.variable: one for one in relations_of(means, variables)}
+    alike = ", ".join(one.name for one in variables if not one.differs)
+    same = f"The same for everybody, so not drawn: {alike}." if alike else ""
+    figure, data = _figure(shown, means, found), _rows(shown, means, found)
+    return drawn(key, title, f"{WHAT} {count_note(n)} {same}", n, figure, data).tested_as(KEY)
 
 
 def _figure(
@@ -101,7 +89,7 @@ def _figure(
             figure.add_trace(trace, **place)
         figure.update_xaxes(**_x_axis(variable), **place)
         if at % COLUMNS == 0:
-            figure.update_yaxes(title_text="points", title_font_size=12, **place)
+            figure.update_yaxes(title_text="score (points)", title_font_size=12, **place)
     figure.update_annotations(font_size=12)
     figure.update_layout(
         showlegend=False, height=rows * _PANEL_PX + _FOOT_PX, margin={"t": 44, "b": 44}
