@@ -223,8 +223,11 @@ def _post_encroachments_s(
 
     The area is as wide as the car's strip of the road and as long as the person's strip across it.
     """
-    for name in sorted({car.name for _, cars in frames for car in cars}):
-        times = [(own, car) for own, cars in frames for car in cars if car.name == name]
+    by_car: dict[str, list[tuple[State, State]]] = {}
+    for own, cars in frames:
+        for car in cars:
+            by_car.setdefault(car.name, []).append((own, car))
+    for _, times in sorted(by_car.items()):
         y_m = times[0][1].y_m
         half_m = (times[0][1].width_m + crossed[0][0].width_m) / 2.0
         inside = [own for own, _ in crossed if abs(own.y_m - y_m) < half_m]

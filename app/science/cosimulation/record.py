@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
@@ -120,7 +120,8 @@ def time_of(step: int, step_s: float) -> float:
 
 
 def _values(state: State) -> dict[str, Any]:
-    return asdict(state)
+    # As `asdict`, which copies each number and takes ten times as long.
+    return dict(vars(state))
 
 
 def _line(content: dict[str, Any]) -> str:

@@ -83,13 +83,12 @@ def record_of(db: Session, run_id: str) -> bytes:
 def store_end(
     db: Session, row: RoadRun, record: Record, road: StudyRoad, timing: Timing, now: datetime
 ) -> None:
-    """Store how a run ended, and how the participant crossed in it."""
+    """Store how a run ended, and how the participant crossed in it; not the hash of its lines."""
     errors = [one.error_m for one in record.guesses if one.error_m is not None]
     row.ended = "partner lost" if record.lost else "complete"
     row.reason, row.ended_at = record.lost[:MAX_REASON], now
     row.steps, row.guesses = max(0, len(record.steps) - 1), len(record.guesses)
     row.worst_guess_m = max(errors, default=None)
-    row.sha256 = record.sha256
     steps = sorted(timing.steps_s)
     row.timing = {
         "p50_s": steps[len(steps) // 2] if steps else None,

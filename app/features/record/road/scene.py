@@ -1,5 +1,6 @@
 """One run of a study's road: its partners advance in a thread, and the record goes to the disk."""
 
+import hashlib
 import logging
 import threading
 import time
@@ -20,6 +21,7 @@ from app.science.cosimulation import (
     Record,
     Row,
     Timing,
+    header_line,
     step_line,
 )
 
@@ -63,6 +65,7 @@ class RoadScene:
         self.is_over = False
         self._context, self._road = context, road
         self._lines: list[str] = []
+        self._hash = hashlib.sha256(header_line(plan.header, road.step_s).encode())
         self._chunk = 1
         self._steps = self._guesses = self._cars = 0
         self._has_begun = False
@@ -117,9 +120,13 @@ class RoadScene:
         self._steps, self._has_begun = number, True
         self._guesses += sum(row.origin == "guessed" for row in rows)
         self._cars = sum(row.state.kind == "car" for row in rows)
-        self._lines.append(step_line(number, rows, self._road.step_s))
+        self._add(step_line(number, rows, self._road.step_s))
         if len(self._lines) >= STEPS_IN_CHUNK:
             self._store()
+
+    def _add(self, line: str) -> None:
+        self._lines.append(line)
+        self._hash.update(line.encode())
 
     def _store(self) -> None:
         """Store the lines so far; if the disk refuses, they wait for the next second."""
@@ -139,10 +146,13 @@ class RoadScene:
 
     def _finish(self, record: Record, timing: Timing = Timing((), {})) -> None:  # noqa: B008 - frozen
         self.problem = record.lost
-        self._lines += record.last_lines()
+        for line in record.last_lines():
+            self._add(line)
         self._store()
         with self._context.database.writing() as db:
             row = db.get(RoadRun, self.plan.id)
             if row is not None:
                 now = self._context.clock.utc_now()
+                # As of the record's bytes, which would take seconds to be written once more.
+                row.sha256 = self._hash.hexdigest()
                 store_end(db, row, record, self._road, timing, now)
