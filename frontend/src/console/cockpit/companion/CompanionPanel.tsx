@@ -146,18 +146,7 @@ function Choice({ session, shown }: ChoiceProps): JSX.Element {
       {wish !== null && (
         <>
           <div className={classes.row}>
-            <NumberInput
-              size="xs"
-              label={t("companion.stature")}
-              {...STATURE_LIMITS}
-              suffix=" cm"
-              decimalScale={1}
-              value={statureOf(wish.stature)}
-              onChange={(value) => {
-                const stature = avatarOf(value);
-                if (stature !== null) change({ stature });
-              }}
-            />
+            <Stature stature={wish.stature} onStature={(stature) => change({ stature })} />
             <NativeSelect
               size="xs"
               label={t("companion.body")}
@@ -211,6 +200,33 @@ function Choice({ session, shown }: ChoiceProps): JSX.Element {
         )}
       </div>
     </div>
+  );
+}
+
+interface StatureProps {
+  readonly stature: string;
+  readonly onStature: (stature: string) => void;
+}
+
+/** What is typed stays as it is until the field is left, also while it is no stature yet. */
+function Stature({ stature, onStature }: StatureProps): JSX.Element {
+  const { t } = useTexts();
+  const [typed, setTyped] = useState<number | string | null>(null);
+  return (
+    <NumberInput
+      size="xs"
+      label={t("companion.stature")}
+      {...STATURE_LIMITS}
+      suffix=" cm"
+      decimalScale={1}
+      value={typed ?? statureOf(stature)}
+      onChange={(value) => {
+        setTyped(value);
+        const named = avatarOf(value);
+        if (named !== null) onStature(named);
+      }}
+      onBlur={() => setTyped(null)}
+    />
   );
 }
 

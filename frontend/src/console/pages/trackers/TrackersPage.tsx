@@ -90,8 +90,15 @@ function Parts({ all }: { readonly all: Trackers }): JSX.Element {
 
 /** The limbs on which more than one tracker is worn whose source is sending. */
 function wornTwice(all: Trackers): readonly (readonly [string, readonly Tracker[]])[] {
-  const worn = all.sources.filter((one) => !one.is_silent).flatMap((one) => one.trackers);
+  // Two senders of one name, which are said elsewhere, have the same trackers.
+  const worn = new Map<string, Tracker>();
+  for (const { door, name, is_silent, trackers } of all.sources) {
+    for (const one of is_silent ? [] : trackers) {
+      worn.set(JSON.stringify([door, name, one.name]), one);
+    }
+  }
+  const own = [...worn.values()];
   return all.limbs
-    .map((limb) => [limb, worn.filter((one) => one.limb === limb)] as const)
-    .filter(([, own]) => own.length > 1);
+    .map((limb) => [limb, own.filter((one) => one.limb === limb)] as const)
+    .filter(([, several]) => several.length > 1);
 }

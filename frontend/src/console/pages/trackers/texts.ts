@@ -3,7 +3,7 @@ export const trackersEn = {
   "trackers.title": "Trackers",
   "trackers.link": "Trackers from other software",
   "trackers.lead":
-    "OptiTrack, SlimeVR, Virtual Motion Capture or a script can send their trackers here, through a door that you open. A skeleton can be watched on a body and recorded as a capture. Trackers that are chosen in a session's cockpit reach its headset, and are recorded.",
+    "OptiTrack, SlimeVR, Virtual Motion Capture or a script can send their trackers here, through a door that you open. A skeleton can be watched on a body, recorded as a capture, and shown to a participant. Trackers that are chosen in a session's cockpit reach its headset, and are recorded.",
   "trackers.doors": "Doors",
   "trackers.door.osc": "VMC and VRChat",
   "trackers.door.natnet": "OptiTrack Motive",
@@ -122,7 +122,7 @@ export const trackersDe: Readonly<Record<keyof typeof trackersEn, string>> = {
   "trackers.title": "Tracker",
   "trackers.link": "Tracker anderer Software",
   "trackers.lead":
-    "OptiTrack, SlimeVR, Virtual Motion Capture oder ein Skript können ihre Tracker hierher senden, durch eine Tür, die Sie öffnen. Ein Skelett lässt sich auf einem Körper ansehen und aufnehmen. Tracker, die im Cockpit einer Sitzung gewählt werden, erreichen deren Headset und werden aufgezeichnet.",
+    "OptiTrack, SlimeVR, Virtual Motion Capture oder ein Skript können ihre Tracker hierher senden, durch eine Tür, die Sie öffnen. Ein Skelett lässt sich auf einem Körper ansehen, aufnehmen und einer Versuchsperson zeigen. Tracker, die im Cockpit einer Sitzung gewählt werden, erreichen deren Headset und werden aufgezeichnet.",
   "trackers.doors": "Türen",
   "trackers.door.osc": "VMC und VRChat",
   "trackers.door.natnet": "OptiTrack Motive",
