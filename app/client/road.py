@@ -25,6 +25,8 @@ log = logging.getLogger(__name__)
 RETRY_S = 0.5
 OPEN_TIMEOUT_S = 10.0
 MOST_IN_MESSAGE = 256
+LONGEST_END_S = 60.0
+"""How long a busy server may take to measure and store a scene that has ended."""
 
 
 class RoadClient:
@@ -100,7 +102,7 @@ class RoadClient:
             return False
         return True
 
-    async def end(self, timeout_s: float = 10.0) -> None:
+    async def end(self, timeout_s: float = LONGEST_END_S) -> None:
         """Say that the phase is over, and wait until the server has ended the scene."""
         self._is_ending = True
         self._due.set()
