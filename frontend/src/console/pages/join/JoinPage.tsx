@@ -65,7 +65,12 @@ function Invitation({ token }: { readonly token: string }): JSX.Element {
     gcTime: 0,
   });
   if (query.isError) return <Refused error={query.error} onRetry={() => void query.refetch()} />;
-  if (query.data === undefined) return <Loader />;
+  if (query.data === undefined)
+    return (
+      <div className={classes.waiting}>
+        <Loader />
+      </div>
+    );
   return (
     <JoinForm
       token={token}
