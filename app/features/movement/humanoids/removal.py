@@ -1,7 +1,8 @@
 """Remove bodies that nothing refers to, such as one that was uploaded by mistake.
 
-Studies and records refer to a body by its name, configurations and tunings by the hash of its file.
-All of them stay readable for good, so a body that one of them may refer to is never removed.
+Studies and records refer to a body by its name; configurations, tunings and records of companions
+by the hash of its file. All of them stay readable for good, so a body that one of them may refer to
+is never removed.
 """
 
 from datetime import datetime
@@ -14,7 +15,10 @@ from app.features.movement.files import drop_unused
 from app.features.movement.humanoids.service import humanoid_by_hash
 from app.features.movement.humanoids.use import configurations_with
 from app.features.people.audit import record
-from app.models import AvatarTuningRow, HumanoidRow
+from app.models import AvatarTuningRow, HumanoidRow, SessionEvent
+
+COMPANION_CHOSEN = "companion_chosen"
+"""The session's event with the body of a companion (`app.features.record.sessions`)."""
 
 
 def remove_body(db: Session, actor: str, content_hash: str, now: datetime) -> None:
@@ -68,4 +72,14 @@ def _require_unused(db: Session, row: HumanoidRow) -> None:
             value=row.hash,
             valid="a body that no tuning uses",
             remedy="Delete the tuning first, in the avatar's editor.",
+        )
+    shown = select(SessionEvent.session_id).where(
+        SessionEvent.type == COMPANION_CHOSEN, SessionEvent.payload.contains(row.hash)
+    )
+    if db.scalar(shown.limit(1)) is not None:
+        raise Conflict(
+            "a participant was shown a companion with this body",
+            value=row.hash,
+            valid="a body that no session has shown",
+            remedy="Leave it; the record says what a participant saw.",
         )

@@ -4,8 +4,8 @@ from fastapi import APIRouter, WebSocket
 from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
-from app.errors import InvalidInput
-from app.features.movement.humanoids import is_known
+from app.errors import InvalidInput, NotFound
+from app.features.movement.humanoids import humanoid_by_hash
 from app.features.movement.performers import reference_body
 from app.features.record.companion.placing import standing_at
 from app.features.record.companion.schemas import CompanionChoice, CompanionWish, SessionCompanion
@@ -25,6 +25,7 @@ from app.platform.dependencies import Context, Reading, SignedIn, write
 from app.science.retargeting import AvatarError
 
 router = APIRouter(tags=["companion"])
+STATURES = "50cm to 260cm"
 
 
 @router.websocket("/vr/companion")
@@ -67,14 +68,23 @@ def _companion(db: Session, session: StudySession, wish: CompanionWish) -> Compa
     """Return a companion with their place; raises InvalidInput for a body that does not exist."""
     try:
         reference_body(wish.stature)
-    except AvatarError as error:
-        raise InvalidInput(str(error), value=wish.stature) from None
-    if wish.humanoid is not None and not is_known(db, wish.humanoid):
+    except AvatarError:
         raise InvalidInput(
-            "there is no such body in this lab",
-            value=wish.humanoid,
-            remedy="Choose one of the page Bodies, or null for a plain body.",
-        )
+            "nobody is that tall",
+            value=wish.stature,
+            valid=STATURES,
+            remedy="Give the companion's height in centimetres, such as 175cm.",
+        ) from None
+    if wish.humanoid is not None:
+        try:
+            # Locked, so that nobody removes the body before it is on the record.
+            humanoid_by_hash(db, wish.humanoid, lock=True)
+        except NotFound:
+            raise InvalidInput(
+                "there is no such body in this lab",
+                value=wish.humanoid,
+                remedy="Choose one of the page Bodies, or null for a plain body.",
+            ) from None
     layouts = protocol_of_session(db, session).tasks.layouts()
     standing = standing_at(wish.place, layouts.values())
     return Companion(

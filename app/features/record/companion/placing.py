@@ -23,6 +23,8 @@ MIRROR_HALF_M = 0.9
 """Half the width of the mirror, on the wall ahead (frontend/src/vr/world/mirror.ts)."""
 STRAYS_M = 0.35
 """The hips of a companion stay within this distance of their place."""
+HIGHEST_HIPS_M = 2.5
+"""The hips of a companion stay between the floor and this height, whatever their source sends."""
 HALF_BODY_M = 0.3
 """From the hips to the side of a person with hanging arms, with some room."""
 _SIDES = MappingProxyType({"ahead_left": -1.0, "left": -1.0, "ahead_right": 1.0, "right": 1.0})
@@ -82,5 +84,6 @@ class InRoom:
         if distance_m > STRAYS_M:
             away_m *= STRAYS_M / distance_m
         values[[0, 2]] = self._place_m + away_m
+        values[1] = min(max(values[1], 0.0), HIGHEST_HIPS_M)
         values[3:7] = multiply(self._turn, values[3:7])
         return values.astype(np.float32)

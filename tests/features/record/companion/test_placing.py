@@ -1,6 +1,7 @@
 """Tests of where a companion stands in the room, and of a performer's pose brought there."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from app.features.movement.performers import OnBody, reference_body
 from app.features.movement.performers.performer import Performer, PerformerName
 from app.features.record.companion.placing import (
     HALF_BODY_M,
+    HIGHEST_HIPS_M,
     MIRROR_HALF_M,
     STRAYS_M,
     InRoom,
@@ -64,6 +66,9 @@ def test_whoever_walks_stays_near_their_place_and_begins_facing_as_told(place: P
             assert shown[1] == pytest.approx(own[1], abs=1e-6)
             assert np.allclose(shown[7:], own[7:], atol=1e-6)
     assert far_m > 1.0
+    jumped = replace(frame, root_m=np.array((0.0, 9999.0, 0.0)))
+    assert in_room is not None
+    assert in_room.values(jumped)[1] == HIGHEST_HIPS_M
 
 
 def _faced(body: OnBody, values: np.ndarray) -> float:

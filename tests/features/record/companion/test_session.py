@@ -23,6 +23,7 @@ from tests.features.record.headset.site import SUBPROTOCOL, Site
 from tests.features.record.headset.streaming import materialised
 from tests.support.beside import beside
 from tests.support.datagrams import HERE, free_udp_port, sender
+from tests.support.humanoid_files import humanoid_file
 
 MIME: Json = {"door": "json", "source": "mime", "skeleton": "Hips"}
 WISH: Json = {**MIME, "stature": "180cm", "humanoid": None, "place": "ahead_right"}
@@ -162,7 +163,7 @@ def test_what_cannot_be_shown_is_refused(site: Site) -> None:
         return failure
 
     assert "no such body" in str(refused(humanoid="0" * 64))
-    assert "outside 0.5 to 2.6 m" in str(refused(stature="30cm"))
+    assert refused(stature="30cm")["error"]["valid"] == "50cm to 260cm"
     refused(place="behind")
     site.command(session_id, "start")
     nobody = {**WISH, "source": "nobody", "in_tasks": True}
@@ -185,6 +186,18 @@ def test_a_headset_fetches_the_companions_body_and_no_other(site: Site) -> None:
         wish = {**WISH, "humanoid": body["content_hash"]}
         ok(site.operator.put(f"/api/sessions/{session_id}/companion", json={"companion": wish}))
         assert headset.get(file).status_code == 200
+
+
+def test_a_body_that_a_participant_was_shown_stays(site: Site) -> None:
+    """The record names the body by its hash, so it is not removed, also not after the session."""
+    answer = site.operator.post("/api/humanoids?name=companion.glb", content=humanoid_file())
+    content_hash = ok(answer)["content_hash"]
+    session_id = site.join()
+    path = f"/api/sessions/{session_id}/companion"
+    ok(site.operator.put(path, json={"companion": {**WISH, "humanoid": content_hash}}))
+    ok(site.operator.put(path, json=NOBODY))
+    refused = error(site.operator.delete(f"/api/humanoids/{content_hash}"), 409, "conflict")
+    assert "companion" in refused["message"]
 
 
 def test_the_newest_page_of_a_headset_shows_the_companion(site: Site) -> None:
