@@ -52,7 +52,7 @@ def test_a_dashboard_has_the_documented_fields(client: TestClient) -> None:
     assert set(view) == about | {"drawn_at", "current", "figures", "filter", "choices"}
     assert (view["kind"], view["simulated"], view["n_completed"]) == ("simulated", True, 2)
     for entry in view["figures"]:
-        words = {"key", "title", "caption", "empty", "n", "group", "wide"}
+        words = {"key", "title", "caption", "empty", "n", "group", "wide", "measure"}
         assert set(entry) == words | {"figure"}
         assert (entry["figure"] is None) != (entry["empty"] is None)
         assert entry["figure"] is None or set(entry["figure"]) == {"data", "layout"}
