@@ -97,6 +97,11 @@ export interface TaskPhase {
   readonly questionnaire: string | null;
 }
 
+/** The phase on the study's road: it ends after so many crossings, or when its time is over. */
+export interface CrossingPhase extends Omit<TaskPhase, "limb"> {
+  readonly crossings: number;
+}
+
 export interface StudyProtocol {
   readonly title: Text;
   readonly description: Text;
@@ -114,6 +119,8 @@ export interface StudyProtocol {
     readonly block: {
       readonly limb_order: string;
       readonly phases: readonly TaskPhase[];
+      /** Only for a study with a road: it comes first. */
+      readonly crossing?: CrossingPhase;
       readonly after?: readonly SetupStep[];
     };
     readonly after: readonly SetupStep[];

@@ -2,7 +2,14 @@
  * The procedure of one session from left to right; timed parts show their seconds, phases are to
  * scale.
  */
-import type { SetupStep, StudyDetail, StudyProtocol, TaskPhase } from "@shared/api/types";
+import type {
+  CrossingPhase,
+  SetupStep,
+  Step,
+  StudyDetail,
+  StudyProtocol,
+  TaskPhase,
+} from "@shared/api/types";
 import { duration, number } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { seconds } from "@shared/units";
@@ -28,8 +35,15 @@ export function Procedure({ study, protocol }: ProcedureProps): JSX.Element {
             {t("procedure.block", { count: protocol.conditions.length })}
           </span>
           <ol className={classes.steps}>
+            {block.crossing !== undefined && (
+              <Phase
+                phase={block.crossing}
+                step={CROSSING}
+                until={t("procedure.crossings", { count: block.crossing.crossings })}
+              />
+            )}
             {block.phases.map((phase) => (
-              <Phase key={phase.limb} phase={phase} />
+              <Phase key={phase.limb} phase={phase} step={{ kind: "task", limb: phase.limb }} />
             ))}
             {(block.after ?? []).map((step, index) => (
               // biome-ignore lint/suspicious/noArrayIndexKey: the steps of a protocol never change places
@@ -61,6 +75,7 @@ interface PartProps {
 /** A step of the file in the form of a session's steps. */
 const named = ({ step, limb }: SetupStep) => ({ kind: step, limb: limb ?? null });
 
+const CROSSING = { kind: "road_crossing", limb: null } as const;
 const QUESTIONNAIRE = { kind: "questionnaire", limb: null } as const;
 
 function Part({ name, kind, steps }: PartProps): JSX.Element {
@@ -102,7 +117,14 @@ function SmallStep({ icon, name, children }: SmallStepProps): JSX.Element {
   );
 }
 
-function Phase({ phase }: { readonly phase: TaskPhase }): JSX.Element {
+interface PhaseProps {
+  readonly phase: TaskPhase | CrossingPhase;
+  readonly step: Pick<Step, "kind" | "limb">;
+  /** What else ends the phase, before its time is over. */
+  readonly until?: string;
+}
+
+function Phase({ phase, step, until }: PhaseProps): JSX.Element {
   const { t } = useTexts();
   const segments = [
     ["preparation", phase.preparation_s],
@@ -113,8 +135,8 @@ function Phase({ phase }: { readonly phase: TaskPhase }): JSX.Element {
     <>
       <li className={`${classes.step} ${classes.phase}`}>
         <span className={classes.phaseName}>
-          <Icon name={phase.limb} />
-          {t(stepName({ kind: "task", limb: phase.limb }))}
+          <Icon name={stepIcon(step)} />
+          {t(stepName(step))}
         </span>
         <span className={`${classes.scale} numbers`}>
           {segments.map(([name, time]) => (
@@ -128,6 +150,7 @@ function Phase({ phase }: { readonly phase: TaskPhase }): JSX.Element {
             </span>
           ))}
         </span>
+        {until !== undefined && <span className={classes.until}>{until}</span>}
       </li>
       {phase.questionnaire !== null && (
         <SmallStep icon={stepIcon(QUESTIONNAIRE)} name={stepName(QUESTIONNAIRE)} />

@@ -197,6 +197,8 @@ export const studyEn = {
   "procedure.preparation": "Preparation",
   "procedure.active": "Active time",
   "procedure.freeze": "Freeze",
+  "procedure.crossings_one": "until {{count}} crossing is done",
+  "procedure.crossings_other": "until {{count}} crossings are done",
   "procedure.legend": "Each task: preparation, active time (filled), freeze.",
   "procedure.total":
     "A session takes about {{minutes}} min, including an estimate for forms and texts; {{planned}} min of that are set by the protocol. Breaks are not included.",
@@ -281,6 +283,8 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "procedure.preparation": "Vorbereitung",
   "procedure.active": "Aktive Zeit",
   "procedure.freeze": "Stillstand",
+  "procedure.crossings_one": "bis zu {{count}} Überquerung",
+  "procedure.crossings_other": "bis zu {{count}} Überquerungen",
   "procedure.legend": "Jede Aufgabe: Vorbereitung, aktive Zeit (gefüllt), Stillstand.",
   "procedure.total":
     "Eine Sitzung dauert etwa {{minutes}} min, mit geschätzter Zeit für Formulare und Texte; {{planned}} min davon legt das Studienprotokoll fest. Pausen sind nicht enthalten.",
