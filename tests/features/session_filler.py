@@ -71,7 +71,7 @@ class Filler:
         store_probes(self.db, self.session.id, steady_probes(NOW))
         for step in plan:
             for attempt in (1, 2) if step.key in self.spec.redone else (1,):
-                if step.kind in ("free_roam", "task"):
+                if step.kind in ("free_roam", "task", "road_crossing"):
                     superseded = step.key in self.spec.redone and attempt == 1
                     voided = superseded or step.key in self.spec.skipped
                     self._phase(step, attempt, "voided" if voided else "done")

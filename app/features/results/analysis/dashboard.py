@@ -71,10 +71,14 @@ def drawings_of(
         invalid=chosen.rows == "all",
         every_body=material.chosen(every_body) if material.bodies else None,
     )
+    # Sessions of an earlier version may have had boxes that the newest one lacks.
+    has_boxes = bool(material.protocol.procedure.block.phases) or bool(material.limbs)
     for figure in FIGURES:
         if group not in (None, figure.group):
             continue
         for drawing in _explained(figure, rows):
+            if drawing.empty is not None and figure.of_boxes and not has_boxes:
+                continue
             shown = drawing if chosen.is_all else drawing.among_chosen()
             words = every_body.words() if drawing.every_body else chosen.words()
             yield shown.marked(prefix, f"{words} {blinded}".strip())

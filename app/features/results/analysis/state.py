@@ -10,6 +10,7 @@ from app.models import (
     Phase,
     PhaseLatency,
     PhaseQuality,
+    RoadCrossing,
     StudySession,
 )
 
@@ -34,7 +35,14 @@ def state_of_data(db: Session, study_key: str, kind: str) -> State:
             .join(StudySession, StudySession.id == table.session_id)
             .where(*sessions)
         )
-        for table in (PhaseQuality, Phase, PhaseLatency, JointErrorCourseRow, AlarmRow)
+        for table in (
+            PhaseQuality,
+            Phase,
+            PhaseLatency,
+            JointErrorCourseRow,
+            AlarmRow,
+            RoadCrossing,
+        )
     ]
     version = newest_version(db, study).number
     return (version, *db.execute(counted).one(), *of_sessions)

@@ -28,7 +28,8 @@ DONE = "a crossing of the road in a finished phase"
 class Measure:
     """One figure: a column of the table of crossings, its axis and its words.
 
-    `gone_too`: whether crossings count in which the participant turned back.
+    `gone_too`: whether crossings count in which the participant turned back. `missing`: what no
+    participant has where there are crossings, but none has this measure.
     """
 
     column: str
@@ -37,6 +38,7 @@ class Measure:
     unit: str
     words: str
     gone_too: bool = False
+    missing: str = DONE
 
 
 MEASURES = (
@@ -47,6 +49,7 @@ MEASURES = (
         "s",
         "Time until the first car would have been at the participant's line as they stepped onto "
         "the carriageway; crossings without a car coming are left out.",
+        missing="a crossing with a car coming in a finished phase",
     ),
     Measure(
         "waited_s",
@@ -62,6 +65,7 @@ MEASURES = (
         "s",
         "Smallest time between participant and car at the place that both used; crossings whose "
         "line no car used are left out.",
+        missing="a crossing whose line a car used in a finished phase",
     ),
     Measure(
         "closest_m",
@@ -69,6 +73,7 @@ MEASURES = (
         "smallest distance (m)",
         "m",
         "Smallest distance between the outlines on the carriageway; 0 if hit.",
+        missing="a crossing with a car on the road in a finished phase",
     ),
     Measure(
         "collision",
@@ -90,14 +95,16 @@ def crossings_drawings(crossings: pd.DataFrame) -> Iterator[Drawing]:
     on_road = crossings[crossings["steps_on_s"].notna()]
     for measure in MEASURES:
         rows = on_road if measure.gone_too else on_road[on_road["is_across"].astype(bool)]
-        yield _drawing(measure, rows.dropna(subset=[measure.column]))
+        yield _drawing(
+            measure, rows.dropna(subset=[measure.column]), DONE if rows.empty else measure.missing
+        )
 
 
-def _drawing(measure: Measure, rows: pd.DataFrame) -> Drawing:
+def _drawing(measure: Measure, rows: pd.DataFrame, missing: str) -> Drawing:
     key, n = f"crossing_{measure.column}", participants(rows)
     words = f"{measure.words} Values are means over each participant's crossings. {MEANS}"
     if n < MIN_PARTICIPANTS:
-        return too_few(key, measure.title, words, n, DONE)
+        return too_few(key, measure.title, words, n, missing)
     numbers = rows.astype({measure.column: "float64"}).assign(limb=ROAD)
     values = per_participant(numbers, measure.column)
     figure = latency_figure(values, axis=measure.axis, unit=measure.unit)

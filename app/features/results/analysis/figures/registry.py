@@ -90,13 +90,22 @@ class Figure:
     Attributes:
         group: The group on the page; the figures of a group are drawn together.
         draw: Makes the drawings, each with its key, title and caption, from the valid rows.
+        of_boxes: Its data are of tasks at boxes: it is empty for ever where a study has none.
     """
 
     group: Group
     draw: Callable[[Rows], Iterator[Drawing]]
+    of_boxes: bool = False
 
     @classmethod
-    def one(cls, group: Group, draw: Callable[[Rows], Drawing], *, wide: bool = False) -> "Figure":
+    def one(
+        cls,
+        group: Group,
+        draw: Callable[[Rows], Drawing],
+        *,
+        wide: bool = False,
+        of_boxes: bool = False,
+    ) -> "Figure":
         """Create the entry of a builder that returns one drawing.
 
         `wide`: the drawing needs the full width of the page.
@@ -106,7 +115,7 @@ class Figure:
             drawing = draw(rows)
             yield drawing.of_group(group, wide=wide or drawing.wide)
 
-        return cls(group, drawings)
+        return cls(group, drawings, of_boxes)
 
 
 def orders_of(protocol: StudyProtocol) -> list[str]:
@@ -128,21 +137,32 @@ FIGURES: tuple[Figure, ...] = (
     ),
     Figure("tasks", lambda rows: rows.by_body("tasks")),
     Figure("tasks", Rows.crossings),
-    Figure.one("tasks", lambda rows: completions_drawing(rows.phases).tested_as("completions")),
-    Figure.one("tasks", lambda rows: learning_drawing(rows.phases)),
+    Figure.one(
+        "tasks",
+        lambda rows: completions_drawing(rows.phases).tested_as("completions"),
+        of_boxes=True,
+    ),
+    Figure.one("tasks", lambda rows: learning_drawing(rows.phases), of_boxes=True),
     Figure.one(
         "tasks",
         lambda rows: contacts_drawing(rows.touching, rows.contacts).tested_as("contact_time"),
         wide=True,
+        of_boxes=True,
     ),
-    Figure.one("tasks", lambda rows: contact_map_drawing(rows.touching, rows.contacts)),
+    Figure.one(
+        "tasks",
+        lambda rows: contact_map_drawing(rows.touching, rows.contacts),
+        of_boxes=True,
+    ),
     Figure("movement", lambda rows: rows.by_body("movement")),
     Figure.one("movement", lambda rows: joint_error_body_drawing(rows.errors)),
     Figure.one("movement", lambda rows: joint_error_drawing(rows.errors).tested_as("joint_error")),
     Figure.one("movement", lambda rows: achieved_drawing(rows.phases)),
-    Figure.one("movement", lambda rows: joint_error_blocks_drawing(rows.errors)),
+    Figure.one("movement", lambda rows: joint_error_blocks_drawing(rows.errors), of_boxes=True),
     Figure.one(
-        "movement", lambda rows: joint_error_course_drawing(rows.counting(rows.filtered.courses))
+        "movement",
+        lambda rows: joint_error_course_drawing(rows.counting(rows.filtered.courses)),
+        of_boxes=True,
     ),
     Figure.one("movement", lambda rows: joint_error_map_drawing(rows.errors), wide=True),
     Figure("movement", lambda rows: joint_error_fingers_drawings(rows.errors)),
