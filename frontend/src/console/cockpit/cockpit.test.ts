@@ -1,4 +1,5 @@
-import type { Allowed, Current, SessionView } from "@shared/api/types";
+import type { SessionRoad } from "@shared/api/road";
+import type { Allowed, Current, SessionView, Step } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
 import { at, session, steps } from "./example";
 import { groupSteps } from "./record/Timeline";
@@ -12,6 +13,9 @@ import {
   redoTarget,
 } from "./session/action";
 import { changesBetween, isOutdated } from "./session/useSession";
+import { beforeCrossing } from "./step/PhaseClock";
+
+type RoadNow = NonNullable<SessionRoad["now"]>;
 
 const view = (
   current: Current | null,
@@ -50,6 +54,40 @@ describe("the primary action", () => {
   it("leaves the height to its form and answers to the participant", () => {
     expect(primaryAction(view(at(1), ["complete_step"]))).toBeNull();
     expect(primaryAction(view(at(3), ["enter_answers"]))).toBeNull();
+  });
+});
+
+describe("the start of a phase on the road", () => {
+  const preparing = at(0, { status: "preparing" });
+  const phases = [
+    { phase_id: 1, status: "done" },
+    { phase_id: 2, status: "preparing" },
+  ];
+  const onRoad = view(preparing, [], {
+    steps: [{ ...(steps[2] as Step), index: 0, kind: "road_crossing", limb: null }],
+    phases: phases as unknown as SessionView["phases"],
+  });
+  const now = { phase_id: 2, steps: 0, guesses: 0, cars: 0, is_heard: true, waits_for: [] };
+  const waits = (scene: Partial<RoadNow> | null) =>
+    beforeCrossing(onRoad, {
+      has_road: true,
+      missing: "",
+      now: scene === null ? null : { ...now, is_over: false, problem: "", ...scene },
+      runs: [],
+    });
+
+  it("says whether it waits for the participant or for the cars, and counts down only then", () => {
+    expect(waits(null)).toBe("road.beforeStart");
+    // The scene of the phase before is not this one's.
+    expect(waits({ phase_id: 1, steps: 900, is_over: true })).toBe("road.beforeStart");
+    expect(waits({ waits_for: ["SUMO"] })).toBe("road.beforeCars");
+    expect(waits({})).toBe("road.beforeCars");
+    expect(waits({ steps: 800, cars: 3 })).toBe("phase.preparing");
+  });
+
+  it("does not speak of a countdown before it", () => {
+    expect(guidance(onRoad)).toBe("guide.preparing.road");
+    expect(guidance(view(at(2, { status: "preparing" }), []))).toBe("guide.preparing");
   });
 });
 

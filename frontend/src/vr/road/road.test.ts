@@ -3,6 +3,7 @@ import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { NO_GOALS } from "@shared/avatar/goals";
 import { describe, expect, it } from "vitest";
+import { phaseOf } from "../session/panels/visitPanels";
 import { RoadRun } from "../tasks";
 import { ORDER } from "../tasks/testing/orders";
 import type { Road } from "../telemetry";
@@ -110,6 +111,14 @@ describe("a phase on the road", () => {
     run.walk(5.2, 0.1, 0);
     run.walk(5.3, 0.1, -0.1);
     expect(run.completed).toBe(0);
+  });
+
+  it("sends whoever has not crossed yet to the start, and praises only the others", () => {
+    const run = new RoadRun({ ...order, has_road: true }, ROAD, 0);
+    run.walk(0, 0, -6.6);
+    expect([phaseOf(run, 0, false), phaseOf(run, 0, true)]).toEqual(["to_start", "walk_back"]);
+    run.walk(1, 0, 0);
+    expect(phaseOf(run, 1, false)).toBe("preparing");
   });
 
   it("goes on after a pause only with cars; another scene's steps count from there", () => {

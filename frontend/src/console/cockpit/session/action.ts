@@ -26,6 +26,9 @@ export function guidance(session: SessionView): Key {
   if (session.status === "completed" && session.simulated) return "guide.completed.simulated";
   if (session.status !== "active" && session.status !== "planned") return `guide.${session.status}`;
   if (step === null || session.current === null) return "guide.planned";
+  if (session.current.status === "preparing" && step.kind === "road_crossing") {
+    return "guide.preparing.road";
+  }
   if (session.current.status !== "ready") return `guide.${session.current.status}`;
   return isForm(step) && step.forms === "headset" ? "step.askInHeadset" : stepText("guide", step);
 }

@@ -1,12 +1,15 @@
 /** The large clock of active time. It never shows more than the last report supports. */
+import type { SessionRoad } from "@shared/api/road";
 import type { Current, SessionView } from "@shared/api/types";
 import { activeAt, type ClockReport, isHolding } from "@shared/clock";
 import { clockFace } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { type Milliseconds, milliseconds, type Seconds, seconds } from "@shared/units";
+import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useMemo, useState } from "react";
 import { type Key, useTexts } from "../../i18n";
-import { causeKey } from "../../steps";
+import { sessionRoadQuery } from "../../queries";
+import { causeKey, isOver } from "../../steps";
 import { type TelemetryStore, useTelemetry } from "../session/telemetryStore";
 import classes from "./CurrentStep.module.css";
 
@@ -29,6 +32,9 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
   const report = useReport(session, store);
   const now = useNow(report.running);
   const { current } = session;
+  const step = session.steps[current?.index ?? -1];
+  const isOnRoad = current?.status === "preparing" && step?.kind === "road_crossing";
+  const { data: road } = useQuery({ ...sessionRoadQuery(session.id), enabled: isOnRoad });
   // A calibration and the traffic are shown as such; else only a scene that nobody sees holds it up.
   const isPending = current?.resuming === true && !SHOWN_ELSEWHERE.has(current.pause_reason ?? "");
   const isUnseen = useLasting(isPending, PENDING_MS);
@@ -52,7 +58,7 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
           )}
           <span className={`${classes.state} ${classes[current.status]}`}>
             <Icon name={ICONS[current.status]} size={18} />
-            {t(stateKey(current))}
+            {t(isOnRoad ? beforeCrossing(session, road) : stateKey(current))}
             {cause !== null && `: ${t(cause)}`}
           </span>
         </div>
@@ -77,6 +83,17 @@ function stateKey(current: Current): Key {
   if (current.pausing) return "phase.pausing";
   if (!current.resuming) return `phase.${current.status}`;
   return current.pause_reason === "road" ? "road.resuming" : "phase.resuming";
+}
+
+/** What a phase on the road waits for before its clock starts. */
+export function beforeCrossing(session: SessionView, road: SessionRoad | undefined): Key {
+  if (road === undefined) return "phase.preparing";
+  const phase = session.phases.findLast((one) => !isOver(one));
+  // The scene is opened once the participant stands at the start; it has cars once it has warmed up.
+  const { now } = road;
+  if (now === null || now.phase_id !== phase?.phase_id) return "road.beforeStart";
+  const hasCars = !now.is_over && now.waits_for.length === 0 && now.steps > 0;
+  return hasCars ? "phase.preparing" : "road.beforeCars";
 }
 
 interface ProgressProps {

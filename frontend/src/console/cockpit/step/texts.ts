@@ -20,6 +20,8 @@ export const sessionEn = {
   "guide.completed": "Everything is stored. Thank the participant.",
   "guide.aborted": "The session was ended early. Its data are kept and its slot is free again.",
   "guide.withdrawn": "The participant withdrew. The slot is free again.",
+  "guide.preparing.road":
+    "It begins once the participant stands on the start square and cars drive.",
   "guide.preparing": "The countdown is running in the headset.",
   "guide.running": "The task is running in the headset. Stay within reach.",
   "guide.paused": "The clock is paused. Resume when the participant is ready.",
@@ -113,6 +115,8 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "guide.aborted":
     "Die Sitzung wurde vorzeitig beendet. Ihre Daten bleiben erhalten, ihr Platz ist wieder frei.",
   "guide.withdrawn": "Die Person hat ihre Teilnahme beendet. Der Platz ist wieder frei.",
+  "guide.preparing.road":
+    "Es beginnt, sobald die Person auf dem Startquadrat steht und Autos fahren.",
   "guide.preparing": "Im Headset läuft der Countdown.",
   "guide.running": "Die Aufgabe läuft im Headset. Bleiben Sie in Reichweite.",
   "guide.paused": "Die Uhr ist angehalten. Setzen Sie fort, wenn die Person bereit ist.",

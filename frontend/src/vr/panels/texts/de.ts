@@ -98,6 +98,10 @@ export const de: Record<keyof typeof en, string> = {
   "steppingIn.keys":
     "Auf diesem Bildschirm: Die Leertaste drückt beide Griffe, T streckt die Arme aus.",
   "ready.body": "Die Versuchsleitung beginnt, sobald Sie bereit sind.",
+  "toStart.body":
+    "Stellen Sie sich auf das weiße Quadrat; lassen Sie sich dorthin führen. Es beginnt, sobald der Verkehr läuft.",
+  "toStart.keys":
+    "Auf diesem Bildschirm: Gehen Sie mit S rückwärts, bis Sie auf dem weißen Quadrat stehen; A und D gehen zur Seite, W vorwärts.",
   "preparing.countdown": "Beginnt in {{seconds}} s",
   "preparing.traffic": "Beginnt, sobald der Verkehr läuft",
   "aloud.title": "Bitte antworten Sie mündlich",

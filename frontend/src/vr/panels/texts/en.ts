@@ -93,6 +93,10 @@ export const en = {
     "Stand in the transparent figure with your arms stretched out like its arms. Then make two fists.",
   "steppingIn.keys": "On this screen: Space presses both grips, T stretches out the arms.",
   "ready.body": "The experimenter starts as soon as you are ready.",
+  "toStart.body":
+    "Stand on the white square. It starts when the traffic does; let yourself be guided there.",
+  "toStart.keys":
+    "On this screen: press S to walk back until you stand on the white square; A and D go sideways, W forwards.",
   "preparing.countdown": "Starts in {{seconds}} s",
   "preparing.traffic": "Starts as soon as the traffic does",
   "aloud.title": "Please answer aloud",

@@ -148,13 +148,19 @@ export class Contents {
         return step.text === null
           ? still({ ...prompt("ready", title, [words("ready.body")]), isBeside: true })
           : this.#text(title, step.text, true);
+      case "to_start":
+        return still({
+          ...prompt("to start", title, [words("toStart.body"), this.#keysToStart()]),
+          isBeside: true,
+        });
       case "preparing":
         return still(this.#countdown(title, step.text, next.secondsLeft));
       case "screen_text": {
         const { texts } = this.#parts.telemetry.welcome;
         const said = step.screenTexts[next.text] ?? texts[next.text];
+        const keys = next.text === "walk_back" ? this.#keysToStart() : "";
         return typeof said === "string" && said !== ""
-          ? still(prompt(next.text, undefined, [said]))
+          ? still(prompt(next.text, undefined, [said, keys]))
           : null;
       }
       case "waiting":
@@ -190,6 +196,11 @@ export class Contents {
     this.#parts.desk.acknowledge(stepIndex).catch(() => {
       this.#read = -1;
     });
+  }
+
+  /** How somebody at a screen walks to the start square; empty for whoever walks themselves. */
+  #keysToStart(): string {
+    return this.#parts.isWorn() ? "" : this.#words("toStart.keys");
   }
 
   #countdown(title: string, text: string | null, secondsLeft: number | null): PanelScreen {

@@ -20,7 +20,7 @@ import {
   StopGesture,
   StopRing,
 } from "../../panels";
-import { BoxRun, type TaskLayout, type TimedRun } from "../../tasks";
+import { BoxRun, RoadRun, type TaskLayout, type TimedRun } from "../../tasks";
 import type { HeadsetState, TelemetryClient } from "../../telemetry";
 import type { TrackedFrame } from "../../tracking/tracked";
 import { type BoundaryProblem, edgeDistanceM, type FloorPoint, type World } from "../../world";
@@ -107,6 +107,7 @@ export class VisitPanels {
   #isSpaceAccepted = false;
   #cutUntilS = Number.NEGATIVE_INFINITY;
   #isCutAsked = false;
+  #hasCrossed = false;
   #body: string | null = null;
   #wasActing: boolean | null = null;
 
@@ -293,7 +294,9 @@ export class VisitPanels {
 
   /** Choose the panel anew, if anything that it depends on has changed. */
   #choose({ timeS, place, state, run, tracked }: Moment): void {
-    const phase = phaseOf(run, timeS);
+    // The words for the way back praise a crossing; before the first one there is nothing to praise.
+    this.#hasCrossed ||= run instanceof RoadRun && (run.clockRuns || run.completed > 0);
+    const phase = phaseOf(run, timeS, this.#hasCrossed);
     const leftS = run?.awaits === "traffic" ? null : (run?.preparationLeftS(timeS) ?? 0);
     const secondsLeft = phase === "preparing" ? leftS && Math.ceil(leftS) : 0;
     const stop = this.#stopState(timeS);
@@ -388,11 +391,18 @@ export class VisitPanels {
   }
 }
 
-function phaseOf(run: TimedRun | null, timeS: number): Situation["phase"] {
+/** Where a phase is; `hasCrossed`: the wearer was on the road before. */
+export function phaseOf(
+  run: TimedRun | null,
+  timeS: number,
+  hasCrossed: boolean,
+): Situation["phase"] {
   if (run === null) return null;
   if (run.isPaused) return "paused";
   if (run.isFrozen) return "frozen";
-  if (run.preparationLeftS(timeS) !== null)
-    return run.awaits === "start" ? "walk_back" : "preparing";
+  if (run.preparationLeftS(timeS) !== null) {
+    if (run.awaits !== "start") return "preparing";
+    return hasCrossed ? "walk_back" : "to_start";
+  }
   return run instanceof BoxRun && run.state.walkBackSinceS !== null ? "walk_back" : "running";
 }

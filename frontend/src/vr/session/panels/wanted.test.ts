@@ -42,6 +42,8 @@ describe("the panel that is wanted", () => {
   it("leaves the view free while a phase runs, and says what its other moments ask for", () => {
     expect(kind({ phase: "running" })).toBe("nothing");
     expect(kind({ phase: "preparing", secondsLeft: 3 })).toBe("preparing");
+    expect(kind({ phase: "to_start" })).toBe("to_start");
+    expect(kind({ phase: "to_start", isOffline: true })).toBe("offline");
     expect(kind({ phase: "frozen" })).toBe("screen_text");
     expect(kind({ phase: "walk_back" })).toBe("screen_text");
     expect(kind({ phase: "paused" })).toBe("pause");

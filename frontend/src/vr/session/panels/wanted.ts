@@ -15,7 +15,7 @@ export interface Situation {
   readonly stepKind: string | null;
   readonly stepIndex: number | null;
   /** Where the running phase is; null between phases. */
-  readonly phase: "preparing" | "running" | "walk_back" | "frozen" | "paused" | null;
+  readonly phase: "to_start" | "preparing" | "running" | "walk_back" | "frozen" | "paused" | null;
   /** Whether the headset measures both feet now. */
   readonly areFeetTracked: boolean;
   /** The lab's trackers are not aligned yet: the wearer has to look around. */
@@ -42,6 +42,7 @@ export type Wanted =
   | { readonly kind: "take_off"; readonly isForm: boolean }
   | { readonly kind: "feet" }
   | { readonly kind: "ready" }
+  | { readonly kind: "to_start" }
   | { readonly kind: "preparing"; readonly secondsLeft: number | null }
   | { readonly kind: "screen_text"; readonly text: "freeze" | "walk_back" }
   | { readonly kind: "waiting" };
@@ -55,7 +56,7 @@ export function wanted(now: Situation): Wanted {
   if (now.stop !== null) return { kind: "pause", pause: { by: "participant", call: now.stop } };
   if (now.place === "over") return { kind: "finished" };
   // A form goes on without a connection, and so does a phase that the study lets go on.
-  const waitsForServer = phase === null || phase === "paused" || phase === "preparing";
+  const waitsForServer = phase === null || phase === "paused" || isBefore(phase);
   if (now.isOffline && waitsForServer && order?.form == null) return { kind: "offline" };
   if (phase !== null) return inPhase(now, phase);
   if (order === null) return now.place === "stepping_in" ? { kind: "stepping_in" } : NOTHING;
@@ -68,12 +69,18 @@ export function wanted(now: Situation): Wanted {
   return betweenPhases(now, order);
 }
 
+/** Whether the clock of a phase has not started yet. */
+const isBefore = (phase: Situation["phase"]): boolean =>
+  phase === "to_start" || phase === "preparing";
+
 function inPhase(now: Situation, phase: NonNullable<Situation["phase"]>): Wanted {
   switch (phase) {
     case "paused":
       return now.order?.called === true
         ? { kind: "pause", pause: { by: "participant", call: "told" } }
         : { kind: "pause", pause: { by: "operator" } };
+    case "to_start":
+      return { kind: "to_start" };
     case "preparing":
       return { kind: "preparing", secondsLeft: now.secondsLeft };
     case "walk_back":
