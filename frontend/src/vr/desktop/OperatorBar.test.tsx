@@ -5,7 +5,7 @@ import { renderToStaticMarkup } from "react-dom/server";
 import { I18nextProvider } from "react-i18next";
 import { describe, expect, it } from "vitest";
 import { translations } from "../i18n";
-import OperatorBar from "./OperatorBar";
+import OperatorBar, { nextOf } from "./OperatorBar";
 
 const AT_FREE_MOVEMENT = {
   id: "s",
@@ -40,6 +40,16 @@ describe("The experimenter's next step on the participant's page", () => {
     const away = { ...AT_FREE_MOVEMENT, devices: [] };
     expect(shown(AT_FREE_MOVEMENT, true)).not.toContain("disabled");
     expect(shown(away, true)).toContain("disabled");
+  });
+
+  it("takes a message about the step before with it, however much else has changed", () => {
+    const later = { ...AT_FREE_MOVEMENT, version: 9 };
+    expect(nextOf(later)).toBe(nextOf(AT_FREE_MOVEMENT));
+    const begun = { ...later, allowed: ["pause"], current: { index: 0, status: "running" } };
+    const next = { ...later, current: { index: 1, status: "ready" } };
+    for (const view of [begun, next] as unknown as SessionView[]) {
+      expect(nextOf(view)).not.toBe(nextOf(AT_FREE_MOVEMENT));
+    }
   });
 
   it("is waited for where nobody is signed in, and only while nothing happens", () => {

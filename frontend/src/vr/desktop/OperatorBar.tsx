@@ -17,7 +17,7 @@ import { actionsDe, actionsEn } from "@shared/session/texts";
 import { Icon } from "@shared/ui/Icon";
 import { describe, errorTexts } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
-import { type JSX, useEffect, useMemo, useRef } from "react";
+import { type JSX, useEffect, useMemo, useRef, useState } from "react";
 import { useTexts } from "../i18n";
 import classes from "./OperatorBar.module.css";
 
@@ -50,6 +50,8 @@ export default function OperatorBar({ sessionId, isWaiting }: OperatorBarProps):
     () => wordsIn<typeof EN & typeof actionsEn>({ en: EN, de: DE }, language),
     [language],
   );
+  // The step at which the last press failed: what is said about it goes when the next step comes.
+  const [failedAt, setFailedAt] = useState<string | null>(null);
   const send = useMutation({
     mutationFn: (view: SessionView) => {
       const action = primaryAction(view);
@@ -58,7 +60,11 @@ export default function OperatorBar({ sessionId, isWaiting }: OperatorBarProps):
         : sessions.command(view.id, view.version, action.command);
     },
     onSuccess: (view) => queries.setQueryData(queryKey, view),
-    onError: () => void queries.invalidateQueries({ queryKey }),
+    onError: (_, view) => {
+      setFailedAt(nextOf(view));
+      const read = queries.invalidateQueries({ queryKey });
+      void read.then(() => setFailedAt(nextOf(queries.getQueryData<SessionView>(queryKey))));
+    },
   });
   const action = session == null ? null : primaryAction(session);
   const canPress =
@@ -80,7 +86,8 @@ export default function OperatorBar({ sessionId, isWaiting }: OperatorBarProps):
       <></>
     );
   }
-  const failure = send.error === null ? null : describe(send.error, errorTexts(t));
+  const isPast = failedAt !== nextOf(session);
+  const failure = send.error === null || isPast ? null : describe(send.error, errorTexts(t));
   return (
     <section className={classes.bar} aria-label={t("operator.title")}>
       <span>
@@ -112,6 +119,12 @@ export default function OperatorBar({ sessionId, isWaiting }: OperatorBarProps):
       )}
     </section>
   );
+}
+
+/** What comes next in a session, as a key: its step, and what moves it on. */
+export function nextOf(session: SessionView | null | undefined): string {
+  if (session == null) return "";
+  return `${session.current?.index ?? ""} ${primaryAction(session)?.label ?? ""}`;
 }
 
 /** The session as this browser's operator sees it; null if nobody is signed in who may run it. */
