@@ -14,33 +14,9 @@ import { codebookQuery } from "../../queries";
 import { useKind } from "../../ui/chosenKind";
 import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
+import { filesOf } from "./archiveFiles";
 import { CodebookTable } from "./CodebookTable";
 import classes from "./ExportTab.module.css";
-
-const FILES = [
-  "sessions",
-  "phases",
-  "answers",
-  "scores",
-  "wide",
-  "corrections",
-  "completions",
-  "contacts",
-  "jointErrors",
-  "jointErrorCourse",
-  "events",
-  "quality",
-  "alarms",
-  "doubts",
-  "clocks",
-  "headset",
-  "samples",
-  "receipts",
-  "protocol",
-  "imported",
-  "calibrations",
-  "codebook",
-] as const;
 
 export function ExportTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
@@ -53,7 +29,7 @@ export function ExportTab({ study }: { readonly study: StudyDetail }): JSX.Eleme
           {t("export.files")}
         </Title>
         <dl className={classes.files}>
-          {FILES.map((file) => (
+          {filesOf(study).map((file) => (
             <div key={file}>
               <dt>{t(`export.file.${file}`)}</dt>
               <dd>{t(`export.about.${file}`)}</dd>

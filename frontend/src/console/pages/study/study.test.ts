@@ -1,6 +1,7 @@
-import type { Ledger, Slot } from "@shared/api/types";
+import type { Ledger, Slot, StudyDetail } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
 import { offsetOfLine, place } from "../Problems";
+import { filesOf } from "./archiveFiles";
 import { arrange, nextFree } from "./LedgerTab";
 import { orderCount } from "./orderCount";
 
@@ -31,6 +32,17 @@ const ledger: Ledger = {
     slot(3, 1, 2, "free"),
   ],
 };
+
+describe("what an archive can contain", () => {
+  const study = (crossing: object | undefined) =>
+    ({ protocol: { procedure: { block: { crossing } } } }) as unknown as StudyDetail;
+
+  it("has the files of a road only for a study with a crossing, or one that is not told", () => {
+    const asked = [study({ crossings: 2 }), study(undefined), { protocol: null }];
+    expect(asked.map((one) => filesOf(one).includes("road"))).toEqual([true, false, true]);
+    expect(filesOf(study(undefined))).toEqual(expect.arrayContaining(["trackers", "companions"]));
+  });
+});
 
 describe("the ledger as a grid", () => {
   it("has every slot in the row of its order and the column of its replicate", () => {

@@ -57,6 +57,15 @@ const exportsEn = {
   "export.file.headset": "goal_states.csv, body_calibrations.csv",
   "export.about.headset":
     "Which parts of the body the headset measured, and how it was calibrated to the participant.",
+  "export.file.road": "road_crossings.csv, road/*.jsonl",
+  "export.about.road":
+    "One row per crossing: gaps, waiting, distances and collisions. With movement also where everybody was at every step.",
+  "export.file.trackers": "tracker_alignments.csv, trackers/*.csv",
+  "export.about.trackers":
+    "How the lab’s trackers were aligned with the headset. With movement also every pose that they sent, if any.",
+  "export.file.companions": "companions/*.csv",
+  "export.about.companions":
+    "With movement, the poses in which the participant was shown another person, if any.",
   "export.file.samples": "samples/*.csv",
   "export.about.samples":
     "One file per session: target and actual pose of every frame, side by side.",
@@ -133,6 +142,15 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.file.headset": "goal_states.csv, body_calibrations.csv",
   "export.about.headset":
     "Welche Körperteile das Headset gemessen hat und wie es auf die Person kalibriert war.",
+  "export.file.road": "road_crossings.csv, road/*.jsonl",
+  "export.about.road":
+    "Eine Zeile je Überquerung: Lücken, Wartezeit, Abstände und Zusammenstöße. Mit Bewegung auch, wo alle in jedem Schritt waren.",
+  "export.file.trackers": "tracker_alignments.csv, trackers/*.csv",
+  "export.about.trackers":
+    "Wie die Tracker des Labors am Headset ausgerichtet waren. Mit Bewegung auch jede Haltung, die sie sendeten.",
+  "export.file.companions": "companions/*.csv",
+  "export.about.companions":
+    "Mit Bewegung die Haltungen, in denen die Person eine andere gezeigt bekam.",
   "export.file.samples": "samples/*.csv",
   "export.about.samples":
     "Eine Datei je Sitzung: Ziel- und Ist-Haltung jedes Bildes nebeneinander.",
