@@ -5,7 +5,7 @@ import { useTexts } from "../i18n";
 import classes from "./Editor.module.css";
 import { ListField, ObjectFields } from "./fields/SpecField";
 import { TextsSection } from "./fields/Texts";
-import { useForm, useLabels } from "./formContext";
+import { useForm, useLabels, useValue } from "./formContext";
 import type { ObjectSpec, Spec } from "./schema";
 import { fieldsOf, SECTIONS, type Section, sectionOf } from "./sections";
 
@@ -87,6 +87,7 @@ function Inner({ spec, path }: { readonly spec: ObjectSpec; readonly path: reado
 /** The steps before, in and after the blocks; the timed phases have a section of their own. */
 function ProcedureSection({ spec }: { readonly spec: ObjectSpec }): JSX.Element | null {
   const { t } = useTexts();
+  const crossing = useValue(["procedure", "block", "crossing"]);
   const procedure = inside(spec, "procedure");
   const block = inside(procedure, "block");
   if (procedure?.kind !== "object" || block?.kind !== "object") return null;
@@ -96,6 +97,9 @@ function ProcedureSection({ spec }: { readonly spec: ObjectSpec }): JSX.Element 
       <fieldset className={classes.group}>
         <legend>{t("section.procedure.block")}</legend>
         <ObjectFields path={["procedure", "block"]} spec={block} without={["phases", "after"]} />
+        {crossing !== undefined && crossing !== null && (
+          <p className={classes.lead}>{t("section.procedure.road")}</p>
+        )}
       </fieldset>
     </>
   );

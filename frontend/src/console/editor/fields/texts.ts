@@ -71,6 +71,8 @@ export const fieldsEn = {
   "section.procedure.lead":
     "The steps of a session. To move a step, focus one of its buttons and press Alt with an arrow key.",
   "section.procedure.block": "In each block",
+  "section.procedure.road":
+    "A crossing’s road, its traffic and its kerb are set in the text at the right, in the section `road`.",
   "section.tasks": "Tasks",
   "section.tasks.lead":
     "The timed tasks of every block. Their length is active time: pauses and walks back do not count.",
@@ -112,6 +114,8 @@ export const fieldsEn = {
   "field.after": "After the blocks",
   "field.block.after": "Asked at the end of every block",
   "field.block.phases": "Tasks in every block",
+  "field.crossing": "Crossing of the road",
+  "field.crossings": "Crossings that end it",
   "field.limb": "Limb",
   "field.forms": "Where it is answered: tablet, headset or aloud",
   "field.limb_order": "Order of the tasks",
@@ -213,6 +217,8 @@ export const fieldsDe: Readonly<Record<keyof typeof fieldsEn, string>> = {
   "section.procedure.lead":
     "Die Schritte einer Sitzung. Um einen Schritt zu verschieben, fokussieren Sie einen seiner Knöpfe und drücken Alt mit einer Pfeiltaste.",
   "section.procedure.block": "In jedem Block",
+  "section.procedure.road":
+    "Straße, Verkehr und Bordstein einer Überquerung stehen im Text rechts, im Abschnitt `road`.",
   "section.tasks": "Aufgaben",
   "section.tasks.lead":
     "Die Aufgaben jedes Blocks. Ihre Dauer ist aktive Zeit: Pausen und Rückwege zählen nicht.",
@@ -254,6 +260,8 @@ export const fieldsDe: Readonly<Record<keyof typeof fieldsEn, string>> = {
   "field.after": "Nach den Blöcken",
   "field.block.after": "Am Ende jedes Blocks gefragt",
   "field.block.phases": "Aufgaben in jedem Block",
+  "field.crossing": "Überqueren der Straße",
+  "field.crossings": "Überquerungen, die es beenden",
   "field.limb": "Körperteil",
   "field.forms": "Wo geantwortet wird: Tablet, Headset oder mündlich",
   "field.limb_order": "Reihenfolge der Aufgaben",
