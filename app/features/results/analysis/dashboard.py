@@ -11,7 +11,7 @@ from dataclasses import replace
 from sqlalchemy.orm import Session
 
 from app.features.results.analysis.figures import FIGURES, Drawing, Figure, Rows, orders_of
-from app.features.results.analysis.material import Material, n_not_valid, read_material
+from app.features.results.analysis.material import Material, read_material
 from app.features.results.analysis.schemas import (
     NO_FILTER,
     DashboardFigures,
@@ -21,6 +21,7 @@ from app.features.results.analysis.schemas import (
     FigureView,
     FilterChoices,
 )
+from app.features.results.analysis.tables import n_not_valid
 
 TITLE_PREFIX = {"people": "", "simulated": "Simulated: ", "test": "Test: "}
 NONE_COUNTS = "There are data, but none are valid: choose Rows: All to see them."

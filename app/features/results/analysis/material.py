@@ -230,11 +230,6 @@ class Material:
         return rows[seen] if invalid else rows[seen & rows["valid"]]
 
 
-def n_not_valid(sessions: pd.DataFrame) -> int:
-    """Return the number of completed sessions that are not valid by the rules of their study."""
-    return int(((sessions["status"] == "completed") & ~sessions["valid"]).sum())
-
-
 def read_material(
     db: Session, study_key: str, kind: DashboardKind, names: Collection[str] = READ.keys()
 ) -> Material:

@@ -9,7 +9,7 @@ from itertools import chain
 
 from app.features.results.analysis.demographics import KEY as DEMOGRAPHICS
 from app.features.results.analysis.figures.drawing import limb_note
-from app.features.results.analysis.material import Material, n_not_valid
+from app.features.results.analysis.material import Material
 from app.features.results.analysis.questions.descriptives import descriptive
 from app.features.results.analysis.questions.effects import effects_of
 from app.features.results.analysis.questions.limb_tests import limb_results
@@ -32,6 +32,7 @@ from app.features.results.analysis.questions.relations import (
 from app.features.results.analysis.questions.reliability import reliability
 from app.features.results.analysis.questions.words import TestReport
 from app.features.results.analysis.schemas import GlanceView, MeasureView, StatisticsResults
+from app.features.results.analysis.tables import n_not_valid
 
 USUAL_ALPHA = 0.05
 MIN_TESTED = 2

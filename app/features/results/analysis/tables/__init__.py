@@ -39,7 +39,7 @@ from app.features.results.analysis.tables.questionnaires import (
     scores_table,
 )
 from app.features.results.analysis.tables.road import road_crossings_table, road_records
-from app.features.results.analysis.tables.sessions import events_table, sessions_table
+from app.features.results.analysis.tables.sessions import events_table, n_not_valid, sessions_table
 from app.features.results.analysis.tables.tasks import (
     completions_table,
     contact_spans_table,
@@ -75,6 +75,7 @@ __all__ = [
     "joint_angles_table",
     "joint_error_course_table",
     "joint_errors_table",
+    "n_not_valid",
     "of_kind",
     "phases_table",
     "present_course_table",

@@ -173,3 +173,8 @@ def events_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     events["step_index"] = [payload.get("step") for payload in payloads]
     events["monotonic_s"] = events["monotonic_ns"] / 1e9
     return finished(sessions_context(db, study_key, kind).merge(events, on="session_id"), "events")
+
+
+def n_not_valid(sessions: pd.DataFrame) -> int:
+    """Return the number of completed sessions that are not valid by the rules of their study."""
+    return int(((sessions["status"] == "completed") & ~sessions["valid"]).sum())

@@ -19,7 +19,6 @@ from app.features.people.audit import TrailHead, head_of
 from app.features.record.receipts import receipt_of
 from app.features.record.telemetry import epochs_of
 from app.features.results.analysis.codebook import codebook_frame
-from app.features.results.analysis.material import n_not_valid
 from app.features.results.analysis.questions import WideColumn, wide_table
 from app.features.results.analysis.tables import (
     Kind,
@@ -42,6 +41,7 @@ from app.features.results.analysis.tables import (
     headset_tests_table,
     joint_error_course_table,
     joint_errors_table,
+    n_not_valid,
     phases_table,
     quality_table,
     road_crossings_table,
