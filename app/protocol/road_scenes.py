@@ -211,6 +211,23 @@ class StudyRoad(_Strict):
         return self
 
     @model_validator(mode="after")
+    def _ports_differ(self) -> Self:
+        taken: dict[int, str] = {}
+        for at, one in enumerate(self.partners):
+            if one.kind != "process":
+                continue
+            if one.port in taken:
+                raise refusal(
+                    f"{taken[one.port]!r} and {one.name!r} are waited for on the same port.",
+                    value=one.port,
+                    valid="every port once",
+                    remedy="Give one of these partners another port.",
+                    at=("partners", at, "port"),
+                )
+            taken[one.port] = one.name
+        return self
+
+    @model_validator(mode="after")
     def _steps_fit(self) -> Self:
         for at, one in enumerate(self.partners):
             stride = (one.step_s or self.step_s) / self.step_s

@@ -9,11 +9,19 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from app.science.cosimulation import ActorKind, Road, State
+from app.science.cosimulation import ActorKind, CosimulationError, Road, State
 
 PROTOCOL: Literal[1] = 1
 LONGEST_LINE, MOST_ACTORS = 1_000_000, 1000
 
+FURTHEST = {
+    "x_m": 1e6,
+    "y_m": 1e6,
+    "heading_rad": 1e6,
+    "speed_m_s": 1e3,
+    "turn_rad_s": 1e3,
+}
+"""The largest numbers, of either sign, that a process may say: with larger ones it has failed."""
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
 _Size = Annotated[float, Field(gt=0.0, le=100.0)]
 _Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]{1,80}$")]
@@ -91,6 +99,13 @@ class StateMessage(_Strict):
 
     def states(self) -> tuple[State, ...]:
         """Return the actors; raise CosimulationError for one that is not valid."""
+        for actor in self.actors:
+            for field, furthest in FURTHEST.items():
+                if abs(value := getattr(actor, field)) > furthest:
+                    raise CosimulationError(
+                        f"{field} of {actor.name!r} is {value:g}; it must be from {-furthest:g} to"
+                        f" {furthest:g}."
+                    )
         return tuple(State(time_s=self.time_s, **actor.model_dump()) for actor in self.actors)
 
 

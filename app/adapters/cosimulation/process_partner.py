@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,11 +34,14 @@ from app.science.cosimulation import (
     PartnerLostError,
     Request,
     Road,
+    SceneOverError,
     State,
 )
 
 TOKEN_VARIABLE = "REEMBODY_PARTNER_TOKEN"  # noqa: S105 - the name of a variable
 _LOOPBACK = "127.0.0.1"
+LOOK_S = 0.2
+"""How often a scene that waits for a process looks whether it goes on waiting."""
 
 
 @dataclass(frozen=True)
@@ -65,14 +69,28 @@ class ProcessPlan:
 class ProcessPartner:
     """One process, connected from `start` until `close`.
 
+    Args:
+        plan: how it takes part.
+        road, seed: of the scene, which it is told.
+        is_over: whether the scene has ended, so that nobody waits for the process any more.
+
     Raises:
-        OSError: the port is taken.
+        CosimulationError: the port is taken.
     """
 
-    def __init__(self, plan: ProcessPlan, road: Road, seed: int) -> None:
+    def __init__(
+        self, plan: ProcessPlan, road: Road, seed: int, is_over: Callable[[], bool] = lambda: False
+    ) -> None:
         self.name, self.step_s = plan.name, plan.step_s
-        self._plan, self._road, self._seed = plan, road, seed
-        self._listener = socket.create_server((_LOOPBACK, plan.port))
+        self._plan, self._road, self._seed, self._is_over = plan, road, seed, is_over
+        try:
+            self._listener = socket.create_server((_LOOPBACK, plan.port))
+        except OSError as error:
+            raise CosimulationError(
+                f"{plan.name!r} cannot be waited for at {_LOOPBACK}:{plan.port}:"
+                f" {os.strerror(error.errno or 0)}. Another program, or the scene of another"
+                " session, may have this port: end it, or give this partner another port."
+            ) from error
         self._process: subprocess.Popen[bytes] | None = None
         self._lines: Lines | None = None
 
@@ -87,7 +105,12 @@ class ProcessPartner:
         return bool(self._plan.command)
 
     def start(self) -> tuple[State, ...]:
-        """Start the process or wait for it, greet it, and return its actors at 0 s."""
+        """Start the process or wait for it, greet it, and return its actors at 0 s.
+
+        Raises:
+            PartnerLostError: it did not come, or has gone.
+            SceneOverError: the scene ended meanwhile.
+        """
         token = secrets.token_hex(16) if self._plan.command else ""
         if self._plan.command:
             self._launch(token)
@@ -100,10 +123,13 @@ class ProcessPartner:
                 road=road_message(self._road),
             )
         )
-        states = self.answer(self._plan.connect_s)
-        if states is None:
-            raise PartnerLostError(f"{self.name!r} did not say its actors at 0 s.")
-        return states
+        until = time.monotonic() + self._plan.connect_s
+        while time.monotonic() < until:
+            self._require_scene()
+            states = self.answer(LOOK_S)
+            if states is not None:
+                return states
+        raise PartnerLostError(f"{self.name!r} did not say its actors at 0 s.")
 
     def begin(self, request: Request) -> None:
         """Ask the process for one step."""
@@ -144,7 +170,8 @@ class ProcessPartner:
     def _accept(self, token: str) -> None:
         until = time.monotonic() + self._plan.connect_s
         while time.monotonic() < until:
-            self._listener.settimeout(0.2)
+            self._require_scene()
+            self._listener.settimeout(LOOK_S)
             try:
                 connection, _ = self._listener.accept()
             except TimeoutError:
@@ -162,6 +189,10 @@ class ProcessPartner:
         raise PartnerLostError(
             f"{self.name!r} did not connect to {self.address} within {self._plan.connect_s:g} s."
         )
+
+    def _require_scene(self) -> None:
+        if self._is_over():
+            raise SceneOverError
 
     def _is_greeted(self, lines: Lines, token: str) -> bool:
         """Whether a connection is that of the expected process; any other is closed."""

@@ -5,7 +5,7 @@ All problems of a file are reported together, each with its line.
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -115,6 +115,7 @@ class _Setting:
     step_s: float
     folder: Path
     seed: int
+    is_over: Callable[[], bool] = lambda: False
 
 
 @contextmanager
@@ -127,7 +128,7 @@ def partners_of(scene: CrossingScene, seed: int) -> Iterator[tuple[Made, list[st
 
     Raises:
         CosimulationError: a partner cannot be made; the message says why and what to do.
-        OSError: a file cannot be opened, or a port is taken.
+        OSError: a file cannot be opened.
     """
     setting = _Setting(scene.road, scene.file.step_s, scene.folder, seed)
     with _made(scene.file.partners, setting) as made:
@@ -135,9 +136,14 @@ def partners_of(scene: CrossingScene, seed: int) -> Iterator[tuple[Made, list[st
 
 
 @contextmanager
-def partners_of_study(road: StudyRoad, seed: int) -> Iterator[tuple[Made, list[str]]]:
-    """Make the partners of a study's road, without the participant; see `partners_of`."""
-    setting = _Setting(road.road.road(), road.step_s, Path(), seed)
+def partners_of_study(
+    road: StudyRoad, seed: int, is_over: Callable[[], bool]
+) -> Iterator[tuple[Made, list[str]]]:
+    """Make the partners of a study's road, without the participant; see `partners_of`.
+
+    Once `is_over` is true, the scene waits no longer for one that is not there yet.
+    """
+    setting = _Setting(road.road.road(), road.step_s, Path(), seed, is_over)
     with _made(road.partners, setting) as made:
         yield made
 
@@ -176,7 +182,7 @@ def _partner(one: PartnerFile | OfStudy, setting: _Setting) -> Partner:
             return SumoPartner(one.name, step_s, road, plan, seed)
         case ProcessOfStudy():
             reached = ProcessPlan(one.name, step_s, (), one.port, one.connect_s)
-            return ProcessPartner(reached, road, seed)
+            return ProcessPartner(reached, road, seed, setting.is_over)
         case ProcessFile():
             own = (one.command, one.port, one.connect_s, setting.folder)
             return ProcessPartner(ProcessPlan(one.name, step_s, *own), road, seed)

@@ -120,8 +120,12 @@ class Conductor:
     ) -> tuple[Record, Timing]:
         """Advance all partners by a number of steps, until one is lost or says that it is over.
 
+        What is found to be invalid in the middle of a run ends it as a lost partner does, so that
+        the record until then is kept.
+
         Raises:
-            CosimulationError: two partners have an actor of the same name.
+            CosimulationError: the scene is invalid from its beginning, such as two partners with an
+                actor of the same name; nothing is recorded.
         """
         lost = ""
         try:
@@ -135,6 +139,10 @@ class Conductor:
                 self._advance(step, began_s)
                 noted(step + 1, self._steps[-1])
                 self._took_s.append(self._clocks.now_s() - began_s)
+        except CosimulationError as error:
+            if not self._steps:
+                raise
+            lost = str(error)
         except PartnerLostError as error:
             lost = str(error)
         except SceneOverError:
@@ -143,8 +151,9 @@ class Conductor:
 
     def _finished(self, header: Mapping[str, Any], lost: str) -> tuple[Record, Timing]:
         for course in self._courses:
-            for guesses in course.open_guesses.values():
-                self._guesses.extend(guesses)
+            for step, guesses in course.open_guesses.items():
+                if step < len(self._steps):  # else its step broke off, and is no part of the record
+                    self._guesses.extend(guesses)
         guesses = sorted(self._guesses, key=lambda one: (one.guessed.time_s, one.guessed.name))
         record = Record(dict(header), self._step_s, tuple(self._steps), tuple(guesses), lost)
         waited = {course.partner.name: course.waited_s for course in self._courses}

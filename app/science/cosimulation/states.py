@@ -6,7 +6,7 @@ counter-clockwise from x. Metres, seconds, radians.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import cos, fsum, hypot, isfinite, pi, remainder, sin
+from math import cos, hypot, isfinite, pi, remainder, sin
 from typing import Literal
 
 ActorKind = Literal["person", "car"]
@@ -51,7 +51,8 @@ class State:
             *(self.turn_rad_s, self.length_m, self.width_m),
         )
         # A sum of finite numbers is finite unless they are absurd, and these would be absurd.
-        if not isfinite(fsum(numbers)):
+        # (`fsum` would raise an error of its own.)
+        if not isfinite(sum(numbers)):
             raise CosimulationError(f"The state of {self.name!r} at {self.time_s} s is not finite.")
         if not (self.length_m > 0.0 and self.width_m > 0.0):
             raise CosimulationError(

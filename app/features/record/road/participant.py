@@ -11,7 +11,7 @@ from app.wire import FloorPlace
 BODY_M = 0.5
 """Diameter of a person on the floor, as of the persons of `app.science.cosimulation`."""
 LOOK_S = 1.0
-"""How often somebody who waits asks whether the phase still goes on."""
+"""How often a scene asks whether its phase still goes on, whether it waits or has much to do."""
 Send = Callable[[int, tuple[State, ...]], None]
 
 
@@ -27,7 +27,8 @@ class Participant:
         time_scale: of the session; above 1 only for simulated ones.
         is_paced: whether a step begins when its time has come, so that a headset can be late; else
             as soon as the headset has said where the participant is.
-        is_current: whether the phase still goes on; asked now and then while nothing comes.
+        is_current: whether the phase still goes on; asked once a second. What it raises if nothing
+            more may be recorded goes through the scene.
     """
 
     name = PARTICIPANT
@@ -50,6 +51,7 @@ class Participant:
         self._next = 0
         self._wanted = 0
         self._is_over = False
+        self._asked_s = time.monotonic()
         self._is_running = False
         self._began_s: float | None = None
         self._send: Send | None = None
@@ -80,7 +82,7 @@ class Participant:
                 self._send, self._is_running, self._began_s = None, False, None
 
     def put(self, first_step: int, places: Sequence[FloorPlace]) -> None:
-        """Take places from the headset; those that are known already are ignored.
+        """Take places from the headset; those that are known already, or too late, are ignored.
 
         Raises:
             ValueError: places are missing before the first one.
@@ -88,6 +90,8 @@ class Participant:
         with self._news:
             if first_step > self._next:
                 raise ValueError(f"the place at step {self._next} is missing")
+            if self._is_over:
+                return
             for step, place in enumerate(places, start=first_step):
                 if step >= self._next:
                     self._places[step] = place
@@ -110,10 +114,16 @@ class Participant:
             self._is_over = True
             self._news.notify_all()
 
+    def is_over(self) -> bool:
+        """Whether the scene is to end; a scene whose partners are not there yet ends at once."""
+        self._look()
+        return self._is_over
+
     def pace(self, scene_s: float) -> None:
         """Wait until a step may begin: its place is there, or its time has come."""
         step = round(scene_s / self.step_s) + 1 - self._warm_up
         while self._is_paced and step > 0:
+            self._look()
             with self._news:
                 if step in self._places or self._is_over:
                     return
@@ -124,7 +134,6 @@ class Participant:
                     if wait_s <= 0.0:
                         return
                 self._news.wait(wait_s)
-            self._require_current()
 
     def start(self) -> tuple[State, ...]:
         """Return the participant where they stand at first."""
@@ -143,9 +152,12 @@ class Participant:
     def answer(self, timeout_s: float) -> tuple[State, ...] | None:
         """Return where the participant is at the step that was asked for."""
         if self._wanted <= 0:
+            if self.is_over() and not self._places:
+                raise SceneOverError
             return (self._state(self._wanted, self._place),)
         left_s = timeout_s
         while True:
+            self._look()
             with self._news:
                 place = self._places.pop(self._wanted, None)
                 if place is not None:
@@ -158,11 +170,15 @@ class Participant:
                 self._news.wait(min(LOOK_S, left_s) if self._is_running else LOOK_S)
                 # A clock that stands makes nobody late.
                 left_s -= time.monotonic() - asked_s if self._is_running else 0.0
-            self._require_current()
 
-    def _require_current(self) -> None:
+    def _look(self) -> None:
+        """Ask once a second whether the phase goes on; what was said until it ended counts."""
+        now_s = time.monotonic()
+        if now_s - self._asked_s < LOOK_S or self._is_over:
+            return
+        self._asked_s = now_s
         if not self._is_current():
-            raise SceneOverError
+            self.end()
 
     def _state(self, step: int, place: FloorPlace) -> State:
         x_m, y_m, heading_rad, speed_m_s = place

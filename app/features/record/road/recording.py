@@ -1,5 +1,7 @@
 """Store the runs of a study's road: their records in pieces, and how the participant crossed."""
 
+import hashlib
+import logging
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +11,10 @@ from typing import Any
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.models import RoadChunk, RoadCrossing, RoadRun
+from app.errors import NotFound, NotNow, Withdrawn
+from app.features.record.lab_trackers import recording_of
+from app.features.record.sessions import require_capture_of
+from app.models import RoadChunk, RoadCrossing, RoadRun, StudySession
 from app.protocol import PARTICIPANT, StudyRoad
 from app.science.cosimulation import (
     Crossing,
@@ -20,7 +25,10 @@ from app.science.cosimulation import (
     steps_of,
 )
 
+log = logging.getLogger(__name__)
 INTERRUPTED = "interrupted"
+REFUSED = (Withdrawn, NotNow, NotFound)
+"""Why nothing may be stored: see `require_recording`; or the session was deleted with its study."""
 MAX_REASON = 400
 
 
@@ -35,6 +43,21 @@ class RunPlan:
     seed: int
     begins_at_s: float
     header: dict[str, Any]
+
+
+def require_recording(db: Session, session: StudySession) -> None:
+    """Raise unless movement of a session may be stored; lock it before storing.
+
+    Raises:
+        Withdrawn: the participant has withdrawn, or their data were erased.
+        NotNow: they refuse to take part.
+    """
+    require_capture_of(db, session)
+    if recording_of(db, session) == "refused":
+        raise NotNow(
+            "the participant refuses to take part: nothing of the road is stored",
+            remedy="Settle the consent with the participant; then load this page again.",
+        )
 
 
 def next_part(db: Session, session_id: str, phase_id: int) -> int:
@@ -95,28 +118,35 @@ def store_end(
         "p99_s": steps[min(len(steps) - 1, int(len(steps) * 0.99))] if steps else None,
         "waited_s": dict(timing.waited_s),
     }
-    _store_crossings(db, row, record, road)
+    db.add_all(_crossings(row, record, road))
+    db.flush()
 
 
 def store_interruption(
     db: Session, row: RoadRun, road: StudyRoad, reason: str, now: datetime
 ) -> None:
-    """End a run whose server stopped, with what is stored of its record."""
-    lines = record_of(db, row.id).decode().splitlines()
-    record = Record(row.header, road.step_s, steps_of(lines), (), reason)
+    """End a run that broke off in its middle, with what is stored of its record."""
+    content = record_of(db, row.id)
+    record = Record(row.header, road.step_s, steps_of(content.decode().splitlines()), (), reason)
     row.ended, row.reason, row.ended_at = INTERRUPTED, reason[:MAX_REASON], now
-    row.steps = max(0, len(record.steps) - 1)
-    _store_crossings(db, row, record, road)
+    row.steps, row.sha256 = max(0, len(record.steps) - 1), hashlib.sha256(content).hexdigest()
+    try:
+        crossings = _crossings(row, record, road)
+    except Exception:
+        # Else the run would go on for ever, and the server that ends it could not start.
+        log.exception("the crossings of the run %s cannot be measured", row.id)
+        crossings = []
+    db.add_all(crossings)
+    db.flush()
 
 
-def _store_crossings(db: Session, row: RoadRun, record: Record, road: StudyRoad) -> None:
-    """Store the crossings after the warm-up, in the phase's active time."""
+def _crossings(row: RoadRun, record: Record, road: StudyRoad) -> list[RoadCrossing]:
+    """Return the crossings after the warm-up, in the phase's active time."""
     warm_up = round(road.warm_up_s / road.step_s)
     after = Record(record.header, record.step_s, record.steps[warm_up:], (), record.lost)
     late_s = row.begins_at_s - warm_up * road.step_s
-    for number, one in enumerate(crossings_of(after, road.road.road(), PARTICIPANT), start=1):
-        db.add(_crossing(row, number, one, late_s))
-    db.flush()
+    found = crossings_of(after, road.road.road(), PARTICIPANT)
+    return [_crossing(row, number, one, late_s) for number, one in enumerate(found, start=1)]
 
 
 def _crossing(row: RoadRun, number: int, one: Crossing, late_s: float) -> RoadCrossing:

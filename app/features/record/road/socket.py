@@ -3,10 +3,12 @@
 import asyncio
 from dataclasses import asdict, dataclass
 
-from app.errors import InvalidInput
+from anyio.to_thread import run_sync
+
+from app.errors import InvalidInput, TakenOver
 from app.features.record.headset import FurtherSocket, next_of, until_one_ends
 from app.features.record.road.scene import RoadScene
-from app.features.record.road.service import Roads
+from app.features.record.road.service import Roads, Wake
 from app.science.cosimulation import State
 from app.wire import (
     FROM_ROAD_CLIENT,
@@ -36,7 +38,17 @@ class RoadSocket(FurtherSocket):
             hello = await next_of(self.socket, FROM_ROAD_CLIENT)
         if not isinstance(hello, RoadHello):
             raise InvalidInput("the first message is no hello", remedy="Send hello first.")
-        scene = await asyncio.to_thread(self.context.part(Roads).join, self.session_id, hello)
+        roads, wake = self.context.part(Roads), self._wake
+        # In threads of their own, because a join waits for the end of the scene before.
+        limiter = roads.joining(self.session_id)
+        scene = await run_sync(roads.join, self.session_id, hello, wake, limiter=limiter)
+        try:
+            await self._serve(roads, wake, scene)
+        finally:
+            scene.participant.detach(self._take)
+            roads.detach(self.session_id, wake)
+
+    async def _serve(self, roads: Roads, wake: Wake, scene: RoadScene) -> None:
         plan, participant = scene.plan, scene.participant
         await self._write(
             RoadWelcome(
@@ -47,16 +59,12 @@ class RoadSocket(FurtherSocket):
                 next_step=participant.next_step,
             )
         )
+        self._require_newest(roads, wake)
         scene.on_end = self._end
         participant.attach(self._take)
         if scene.is_over:
             self._end(scene.problem)
-        try:
-            await until_one_ends(
-                self._read(scene), self._send(plan.begins_at_s, participant.step_s)
-            )
-        finally:
-            participant.detach(self._take)
+        await until_one_ends(self._read(scene), self._send(roads, wake, scene))
 
     async def _read(self, scene: RoadScene) -> None:
         participant = scene.participant
@@ -77,10 +85,12 @@ class RoadSocket(FurtherSocket):
                 case RoadHello():
                     raise InvalidInput("hello came twice", remedy="Open a new connection.")
 
-    async def _send(self, begins_at_s: float, step_s: float) -> None:
+    async def _send(self, roads: Roads, wake: Wake, scene: RoadScene) -> None:
         """Send the newest states, and that the scene has ended, after which nothing comes."""
+        begins_at_s, step_s = scene.plan.begins_at_s, scene.participant.step_s
         while True:
             await self._wait_for_news()
+            self._require_newest(roads, wake)
             newest, self._newest = self._newest, None
             if newest is not None:
                 step, others = newest
@@ -88,8 +98,17 @@ class RoadSocket(FurtherSocket):
                 actors = tuple(_actor(one) for one in others)
                 await self._write(RoadActors(step=step, active_s=active_s, actors=actors))
             if self._ended is not None:
+                if scene.refusal is not None:
+                    raise scene.refusal
                 await self._write(RoadEnded(problem=self._ended))
                 return
+
+    def _require_newest(self, roads: Roads, wake: Wake) -> None:
+        if not roads.is_attached(self.session_id, wake):
+            raise TakenOver(
+                "another page of this headset is on the road now",
+                remedy="Continue there, and close this page; to continue here, reload it.",
+            )
 
     def _take(self, step: int, others: tuple[State, ...]) -> None:
         """Take the newest states, in the scene's thread."""
