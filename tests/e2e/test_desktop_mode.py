@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, PICTURE_HIDDEN, Experimenter
 from tests.e2e.test_first_study import STUDY, short_study
-from tests.features.lab import ok
+from tests.features.lab import Json, ok
 from tests.features.record.headset.site import Site
 from tests.rehearsal.test_road import short_study as short_road
 from tests.support.acting_on_screen import act_on_this_screen, until
@@ -124,8 +124,18 @@ def test_one_person_alone_crosses_the_road_there_and_back(
         screenshot(desk, f"desk-road-{crossed}")
         desk.evaluate("reembody.isRendering = false")
     until(desk, "reembody.run === null")
-    road = ok(headset_site.operator.get(f"/api/sessions/{session['id']}/road"))
-    assert [one["is_across"] for run in road["runs"] for one in run["crossings"]] == [True, True]
+    runs = _ended_runs(headset_site, session["id"])
+    assert [one["is_across"] for run in runs for one in run["crossings"]] == [True, True]
+
+
+def _ended_runs(site: Site, session_id: str) -> list[Json]:
+    """Return the runs on the road once the server has stored the end of each."""
+    deadline = time.monotonic() + PATIENCE_MS / 1000
+    while True:
+        runs: list[Json] = ok(site.operator.get(f"/api/sessions/{session_id}/road"))["runs"]
+        if all(run["ended"] != "running" for run in runs) or time.monotonic() > deadline:
+            return runs
+        time.sleep(0.2)
 
 
 PLACE = """() => ({
