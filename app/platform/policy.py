@@ -123,6 +123,7 @@ POLICY: dict[str, frozenset[str]] = {
     # Tracking software that sends through the doors of this server.
     "GET /api/trackers": LAB,
     "PUT /api/trackers/doors/{door}": DESIGNERS,
+    "GET /api/trackers/doors/{door}/sessions": LAB,
     "PUT /api/trackers/limbs": RUNNERS,
     # Skeletons that they send, watched on a body and recorded as captures.
     "GET /api/trackers/performers": LAB,

@@ -37,7 +37,7 @@ def test_a_performer_stands_before_the_participant(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Whoever acts on this screen sees the performer, until the experimenter shows nobody."""
+    """Whoever acts on this screen sees the performer, until the experimenter stops showing them."""
     port = free_udp_port()
     door = {"is_open": True, "interface": HERE, "port": port}
     ok(headset_site.operator.put("/api/trackers/doors/json", json=door))
@@ -55,7 +55,7 @@ def test_a_performer_stands_before_the_participant(
         assert axe(page) == []
         screenshot(page, "companion-chosen")
         panel.get_by_role("button", name="Show to the participant").click()
-        expect(panel.get_by_text("The participant sees them now")).to_be_visible(
+        expect(panel.get_by_text("The participant sees the companion now")).to_be_visible(
             timeout=PATIENCE_MS
         )
         expect(panel.get_by_text("Poses stored")).to_be_visible(timeout=PATIENCE_MS)
@@ -64,7 +64,7 @@ def test_a_performer_stands_before_the_participant(
         panel.scroll_into_view_if_needed()
         assert axe(page) == []
         screenshot(page, "companion")
-        panel.get_by_role("button", name="Show nobody").click()
-        expect(panel.get_by_role("button", name="Show nobody")).to_be_hidden()
+        panel.get_by_role("button", name="Stop showing").click()
+        expect(panel.get_by_role("button", name="Stop showing")).to_be_hidden()
         drawn_until(acted.desk, lambda calls: calls <= drawn)
     ok(headset_site.operator.put("/api/trackers/doors/json", json={**door, "is_open": False}))

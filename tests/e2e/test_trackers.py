@@ -68,7 +68,7 @@ def test_trackers_arrive_are_judged_and_are_put_on_limbs(
     experimenter.log_in()
     page.goto(f"{live_server.url}/#/equipment")
     page.get_by_role("link", name="Trackers from other software").click()
-    expect(page.get_by_role("heading", name="Nothing has arrived yet")).to_be_visible()
+    expect(page.get_by_role("heading", name="All doors are closed")).to_be_visible()
     expect(page.get_by_text("Closed", exact=True)).to_have_count(3)
     assert axe(page) == []
     screenshot(page, "trackers-empty")
@@ -139,6 +139,6 @@ def test_trackers_arrive_are_judged_and_are_put_on_limbs(
 
     for name in ports:
         page.get_by_role("button", name=f"Close the door {name}").click()
-    expect(page.get_by_role("heading", name="Nothing has arrived yet")).to_be_visible()
+    expect(page.get_by_role("heading", name="All doors are closed")).to_be_visible()
     page.goto(f"{live_server.url}/#/people/audit")
     expect(page.get_by_text("closed the door Scripts for trackers")).to_have_count(2)

@@ -4,11 +4,16 @@ from fastapi import APIRouter, WebSocket
 from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
+from app.features.movement.live import DoorKey
 from app.features.record.headset import serve_headset
-from app.features.record.lab_trackers.schemas import SessionTrackers, TrackersWish
+from app.features.record.lab_trackers.schemas import (
+    SessionBehindDoor,
+    SessionTrackers,
+    TrackersWish,
+)
 from app.features.record.lab_trackers.service import LabTrackers
 from app.features.record.lab_trackers.socket import TrackerSocket
-from app.features.record.lab_trackers.view import session_trackers
+from app.features.record.lab_trackers.view import session_trackers, sessions_behind
 from app.features.record.sessions import ChooseTrackers, apply_command
 from app.platform.access import session_by_id
 from app.platform.dependencies import Context, Reading, SignedIn, write
@@ -20,6 +25,12 @@ router = APIRouter(tags=["trackers"])
 async def vr_trackers(socket: WebSocket) -> None:
     """Bring the session's trackers to its headset; see docs/protocol.md."""
     await serve_headset(socket, TrackerSocket)
+
+
+@router.get("/trackers/doors/{door}/sessions")
+def get_door_sessions(door: DoorKey, db: Reading, _: SignedIn) -> list[SessionBehindDoor]:
+    """Return the sessions that are not over and use a source of this door."""
+    return sessions_behind(db, door)
 
 
 @router.get("/sessions/{session_id}/trackers")

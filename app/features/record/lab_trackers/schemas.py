@@ -107,3 +107,11 @@ class SessionTrackers(BaseModel):
     refits: int = 0
     jumps: int = 0
     state: Literal["planned", "active", "completed", "aborted", "withdrawn"]
+
+
+class SessionBehindDoor(BaseModel):
+    """A session that is not over and uses a source of a door: as its trackers, its companion."""
+
+    session_id: str
+    participant_code: str
+    uses: list[Literal["trackers", "companion"]]

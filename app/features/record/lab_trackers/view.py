@@ -1,23 +1,26 @@
 """Show the trackers that a session's headset uses, in the units of the lab's page."""
 
 import math
+from typing import Literal
 
 import numpy as np
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.movement.live import LiveTracking
+from app.features.movement.live import DoorKey, LiveTracking
 from app.features.record.lab_trackers.link import REFERENCE, TrackerLink
 from app.features.record.lab_trackers.schemas import (
     AlignmentView,
     DoubledLimb,
     LookedAround,
+    SessionBehindDoor,
     SessionTrackers,
     SourceChoice,
     WornTracker,
 )
 from app.features.record.lab_trackers.service import LabTrackers
 from app.features.record.sessions import state_of
-from app.models import StudySession
+from app.models import Participant, StudySession
 from app.platform.context import AppContext
 from app.science.alignment import Alignment, Looking
 from app.wire import GOALS
@@ -74,6 +77,27 @@ def session_trackers(db: Session, context: AppContext, session: StudySession) ->
             "jumps": followed.jumps,
         }
     )
+
+
+def sessions_behind(db: Session, door: DoorKey) -> list[SessionBehindDoor]:
+    """Return the sessions that lose something once a door is closed, the oldest first."""
+    rows = db.execute(
+        select(StudySession, Participant.code)
+        .join(Participant, Participant.id == StudySession.participant_id)
+        .where(StudySession.status.in_(("planned", "active")))
+        .order_by(StudySession.created_at, StudySession.id)
+    )
+    found = []
+    for session, code in rows:
+        state = state_of(session)
+        uses: list[Literal["trackers", "companion"]] = []
+        if state.trackers is not None and state.trackers.door == door:
+            uses.append("trackers")
+        if state.companion is not None and state.companion.door == door:
+            uses.append("companion")
+        if uses:
+            found.append(SessionBehindDoor(session_id=session.id, participant_code=code, uses=uses))
+    return found
 
 
 def alignment_view(alignment: Alignment, link: TrackerLink, now_s: float) -> AlignmentView:

@@ -10,6 +10,7 @@ import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, type ReactNode, useEffect, useMemo, useRef, useState } from "react";
 import { useLocation } from "wouter";
+import { useHashLocation } from "wouter/use-hash-location";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { Problems } from "../pages/Problems";
@@ -87,6 +88,30 @@ export function Editor(props: EditorProps): JSX.Element {
   );
 }
 
+const SAVED = "study-saved";
+/** Longer than other notes stay: this one has a link. */
+const WITH_LINK_MS = 20_000;
+
+interface SavedNoteProps {
+  readonly saved: string;
+  /** The editor's address: on another page, also by the link, the note has nothing to say. */
+  readonly here: string;
+  readonly next: string;
+  readonly children: string;
+}
+
+function SavedNote({ saved, here, next, children }: SavedNoteProps): JSX.Element {
+  const [address] = useHashLocation();
+  useEffect(() => {
+    if (address !== here) notifications.hide(SAVED);
+  }, [address, here]);
+  return (
+    <>
+      {saved} <Anchor href={next}>{children}</Anchor>
+    </>
+  );
+}
+
 interface BarProps {
   readonly draft: Draft;
   readonly studyKey: string | null;
@@ -107,19 +132,22 @@ function Bar({ draft, studyKey, title, unsaved, onSave }: BarProps): JSX.Element
     onSuccess: async (study) => {
       dropDraft(studyKey ?? "new");
       await queries.invalidateQueries({ queryKey: ["studies"] });
+      const saved = t("editor.saved", { version: study.version });
+      const here = `/studies/${study.key}/edit`;
+      navigate(here);
       notifications.show({
-        message: (
-          <>
-            {t("editor.saved", { version: study.version })}{" "}
-            {studyKey === null && (
-              <Anchor href={`#/studies/${study.key}`}>{t("editor.saved.next")}</Anchor>
-            )}
-          </>
-        ),
-        ...(studyKey === null && { autoClose: false }),
+        id: SAVED,
+        message:
+          studyKey === null ? (
+            <SavedNote saved={saved} here={here} next={`#/studies/${study.key}`}>
+              {t("editor.saved.next")}
+            </SavedNote>
+          ) : (
+            saved
+          ),
+        ...(studyKey === null && { autoClose: WITH_LINK_MS }),
         closeButtonProps: { "aria-label": t("action.close") },
       });
-      navigate(`/studies/${study.key}/edit`);
     },
   });
   return (

@@ -1,27 +1,18 @@
 /** Recordings that go on or are not stored yet, and those that were stored just now. */
 import { Button } from "@mantine/core";
-import { performers, type Recording, type RecordingStored } from "@shared/api/performers";
-import { dateTime, decimals, duration, number } from "@shared/format";
-import { Icon } from "@shared/ui/Icon";
-import { Notice } from "@shared/ui/Notice";
+import { performers, type Recording } from "@shared/api/performers";
+import { dateTime, duration, number } from "@shared/format";
 import { seconds } from "@shared/units";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { Link } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { actorName } from "../pages/people/auditWords";
 import { usePermissions } from "../permissions";
 import { performersQuery } from "../queries";
 import classes from "./Performer.module.css";
+import { type Stored, StoredNotice, useStoring } from "./Storing";
 import { titleOf } from "./WatchPanel";
-
-/** Gaps that are listed; the rest are counted. */
-const LISTED = 5;
-
-interface Stored extends RecordingStored {
-  readonly title: string;
-}
 
 export function Recordings({ all }: { readonly all: readonly Recording[] }): JSX.Element | null {
   const { t } = useTexts();
@@ -57,14 +48,7 @@ function Going({ recording, onStored }: GoingProps): JSX.Element {
   const queries = useQueryClient();
   const canRecord = usePermissions()("recordPerformer");
   const renew = () => queries.invalidateQueries({ queryKey: performersQuery.queryKey });
-  const store = useMutation({
-    mutationFn: () => performers.store(recording.id),
-    onSuccess: (result) => {
-      onStored({ ...result, title: titleOf(recording) });
-      void queries.invalidateQueries({ queryKey: ["captures"] });
-    },
-    onSettled: renew,
-  });
+  const store = useStoring(titleOf(recording), onStored);
   const discard = useMutation({
     mutationFn: () => performers.discard(recording.id),
     onSettled: renew,
@@ -94,7 +78,7 @@ function Going({ recording, onStored }: GoingProps): JSX.Element {
             size="xs"
             loading={store.isPending}
             disabled={recording.frames === 0}
-            onClick={() => store.mutate()}
+            onClick={() => store.mutate(recording)}
           >
             {t(isRunning ? "performer.stop" : "performer.store")}
           </Button>
@@ -110,47 +94,5 @@ function Going({ recording, onStored }: GoingProps): JSX.Element {
         </div>
       )}
     </div>
-  );
-}
-
-interface StoredNoticeProps {
-  readonly stored: Stored;
-  readonly onClose: () => void;
-}
-
-/** What was stored, with its gaps. */
-function StoredNotice({ stored, onClose }: StoredNoticeProps): JSX.Element {
-  const { t, language } = useTexts();
-  const at = (time: number): string => decimals(time, language, 2);
-  const listed = stored.gaps
-    .slice(0, LISTED)
-    .map(({ from_s, to_s }) => t("performer.gap", { from: at(from_s), to: at(to_s) }));
-  return (
-    <Notice
-      tone="info"
-      icon="check"
-      title={t("performer.stored", { name: stored.title })}
-      actions={
-        <>
-          <Link href={`/captures/${stored.capture_id}`} className={classes.link ?? ""}>
-            {t("performer.stored.open")} <Icon name="forward" size={14} />
-          </Link>{" "}
-          <Button size="compact-xs" variant="default" onClick={onClose}>
-            {t("performer.stored.close")}
-          </Button>
-        </>
-      }
-    >
-      {t("performer.stored.so", {
-        time: at(stored.duration_s),
-        rate: decimals(stored.rate_hz, language, 1),
-        frames: number(stored.frames, language, 0),
-      })}{" "}
-      {stored.gaps.length === 0
-        ? t("performer.stored.noGaps")
-        : t("performer.stored.gaps", { count: stored.gaps.length, listed: listed.join(", ") })}{" "}
-      {stored.held_share > 0 &&
-        t("performer.stored.held", { value: decimals(100 * stored.held_share, language, 1) })}
-    </Notice>
   );
 }

@@ -17,9 +17,10 @@ import {
   performers,
   type Recording,
 } from "@shared/api/performers";
-import { decimals } from "@shared/format";
+import { decimals, duration } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
+import { seconds } from "@shared/units";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef, useState } from "react";
 import { BodySelect, useBodyChoice } from "../bodyView/BodyChoice";
@@ -33,6 +34,7 @@ import { useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
 import { performersQuery } from "../queries";
 import classes from "./Performer.module.css";
+import { type Stored, StoredNotice, useStoring } from "./Storing";
 import { useWatched, type Watched } from "./useWatched";
 
 const GROUNDS: readonly GroundKey[] = ["flat", "ramp", "kerb", "steps"];
@@ -59,6 +61,7 @@ export function WatchPanel({ performer, recording }: WatchPanelProps): JSX.Eleme
   const watched = useWatched(root, wish, body.model);
   const { scene } = watched;
   useEffect(() => scene?.setFollowing(isFollowing), [scene, isFollowing]);
+  const [stored, setStored] = useState<Stored | null>(null);
   const others = watched.state?.others ?? [];
   return (
     <section
@@ -103,9 +106,10 @@ export function WatchPanel({ performer, recording }: WatchPanelProps): JSX.Eleme
         />
         <div className={classes.actions}>
           <AgreedPoses performer={performer} isReady={watched.state?.state === "ready"} />
-          <Record performer={performer} recording={recording} />
+          <Record performer={performer} recording={recording} onStored={setStored} />
         </div>
       </div>
+      {stored !== null && <StoredNotice stored={stored} onClose={() => setStored(null)} />}
       <div
         className={classes.frame}
         data-way={watched.drawingState}
@@ -286,24 +290,52 @@ function AgreedPoses({
   );
 }
 
-function Record({ performer, recording }: WatchPanelProps): JSX.Element | null {
+interface RecordProps extends WatchPanelProps {
+  readonly onStored: (stored: Stored | null) => void;
+}
+
+/** One button: it begins a recording, then ends and stores it, with its time beside it. */
+function Record({ performer, recording, onStored }: RecordProps): JSX.Element | null {
   const { t } = useTexts();
   const queries = useQueryClient();
   const record = useMutation({
     mutationFn: () => performers.record(nameOf(performer)),
+    onSuccess: () => onStored(null),
+    // Until the recording is known, the button would begin another one.
     onSettled: () => queries.invalidateQueries({ queryKey: performersQuery.queryKey }),
   });
+  const store = useStoring(titleOf(performer), onStored);
   if (!usePermissions()("recordPerformer")) return null;
+  if (recording === undefined) {
+    return (
+      <>
+        {record.isError && <Failure error={record.error} />}
+        <Button
+          size="xs"
+          disabled={performer.state === "gathering"}
+          loading={record.isPending}
+          onClick={() => record.mutate()}
+        >
+          {t("performer.record")}
+        </Button>
+      </>
+    );
+  }
+  const isRunning = recording.state === "running";
   return (
     <>
-      {record.isError && <Failure error={record.error} />}
+      {store.isError && <Failure error={store.error} />}
+      <span className={`${classes.time} numbers`}>
+        <span className={`${classes.dot} ${isRunning ? classes.running : ""}`} aria-hidden />
+        {duration(seconds(recording.duration_s))}
+      </span>
       <Button
         size="xs"
-        disabled={recording !== undefined || performer.state === "gathering"}
-        loading={record.isPending}
-        onClick={() => record.mutate()}
+        loading={store.isPending}
+        disabled={recording.frames === 0}
+        onClick={() => store.mutate(recording)}
       >
-        {t(recording === undefined ? "performer.record" : "performer.recording")}
+        {t(isRunning ? "performer.stop" : "performer.store")}
       </Button>
     </>
   );

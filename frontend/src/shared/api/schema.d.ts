@@ -2908,6 +2908,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/trackers/doors/{door}/sessions": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Door Sessions
+         * @description Return the sessions that are not over and use a source of this door.
+         */
+        readonly get: operations["get_door_sessions_api_trackers_doors__door__sessions_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/trackers/limbs": {
         readonly parameters: {
             readonly query?: never;
@@ -10363,6 +10383,18 @@ export interface components {
             readonly standing_hips_m: number;
             /** Stature M */
             readonly stature_m: number;
+        };
+        /**
+         * SessionBehindDoor
+         * @description A session that is not over and uses a source of a door: as its trackers, its companion.
+         */
+        readonly SessionBehindDoor: {
+            /** Participant Code */
+            readonly participant_code: string;
+            /** Session Id */
+            readonly session_id: string;
+            /** Uses */
+            readonly uses: readonly ("trackers" | "companion")[];
         };
         /**
          * SessionBrief
@@ -19394,6 +19426,46 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["LiveView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_door_sessions_api_trackers_doors__door__sessions_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly door: "osc" | "natnet" | "json";
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["SessionBehindDoor"][];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

@@ -10,6 +10,8 @@ export type LimbWish = Schemas["LimbWish"];
 export type Source = Schemas["SourceView"];
 export type Tracker = Schemas["TrackerView"];
 
+/** A session that is not over and uses a source of a door. */
+export type SessionBehindDoor = Schemas["SessionBehindDoor"];
 export type SessionTrackers = Schemas["SessionTrackers"];
 
 export const trackers = {
@@ -17,6 +19,10 @@ export const trackers = {
   setDoor: (door: Door["door"], wish: DoorWish) =>
     answer<Trackers>(
       server.PUT("/api/trackers/doors/{door}", { params: { path: { door } }, body: wish }),
+    ),
+  sessionsBehind: (door: Door["door"]) =>
+    answer<SessionBehindDoor[]>(
+      server.GET("/api/trackers/doors/{door}/sessions", { params: { path: { door } } }),
     ),
   setLimb: (wish: LimbWish) => answer<Trackers>(server.PUT("/api/trackers/limbs", { body: wish })),
   /** Those that a session's headset uses. */

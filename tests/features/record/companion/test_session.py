@@ -210,3 +210,25 @@ def test_the_newest_page_of_a_headset_shows_the_companion(site: Site) -> None:
             assert told(first)["code"] == "taken_over"
             second.send(json.dumps({"type": "companion_seen"}))
             assert "seen" in told(second)["message"]
+
+
+def test_a_door_names_the_sessions_that_use_it(site: Site) -> None:
+    """Whoever closes a door is told which sessions lose trackers or companion, until they end."""
+    session_id = site.join()
+    path = f"/api/sessions/{session_id}"
+
+    def behind(door: str) -> list[list[str]]:
+        found = ok(site.operator.get(f"/api/trackers/doors/{door}/sessions"))
+        code = ok(site.operator.get(path))["participant_code"]
+        own = [one for one in found if one["session_id"] == session_id]
+        assert all(one["participant_code"] == code for one in own)
+        return [one["uses"] for one in own]
+
+    assert behind("json") == []
+    ok(site.operator.put(f"{path}/companion", json={"companion": WISH}))
+    assert (behind("json"), behind("osc")) == ([["companion"]], [])
+    ok(site.operator.put(f"{path}/trackers", json={"door": "json", "source": "lab"}))
+    assert behind("json") == [["trackers", "companion"]]
+    site.command(session_id, "start")
+    site.command(session_id, "abort", reason="a test")
+    assert behind("json") == []

@@ -20,11 +20,18 @@ export function TelemetryCard({ session, store }: TelemetryCardProps): JSX.Eleme
   const phase = session.phases.at(-1);
   if (session.status !== "active") return null;
   const telemetry = received?.telemetry;
-  const figures = [
-    ["completions", telemetry?.completions ?? phase?.completions ?? null, ""],
-    ["contacts", telemetry?.side_contacts ?? phase?.side_contacts ?? null, ""],
-    ["contactTime", telemetry?.side_contact_s ?? phase?.side_contact_s ?? null, "s"],
-  ] as const;
+  const completions = telemetry?.completions ?? phase?.completions ?? null;
+  // There are no boxes on a road, whose sides could be touched.
+  const isRoad = session.steps.some(
+    ({ index, kind }) => index === phase?.step_index && kind === "road_crossing",
+  );
+  const figures = isRoad
+    ? ([["crossings", completions, ""]] as const)
+    : ([
+        ["completions", completions, ""],
+        ["contacts", telemetry?.side_contacts ?? phase?.side_contacts ?? null, ""],
+        ["contactTime", telemetry?.side_contact_s ?? phase?.side_contact_s ?? null, "s"],
+      ] as const);
   if (telemetry === undefined && phase === undefined) return null;
   return (
     <section className={classes.card}>

@@ -22,6 +22,8 @@ import { titleOf } from "../../performer/WatchPanel";
 import { sessionCompanionQuery } from "../../queries";
 import cockpit from "../Cockpit.module.css";
 import live from "../Live.module.css";
+import { hiddenBecause } from "../session/action";
+import { ClosedDoor, useIsDoorClosed } from "../trackers/ClosedDoor";
 import classes from "./CompanionPanel.module.css";
 
 const PLACES: readonly CompanionPlace[] = ["ahead_left", "ahead_right", "left", "right"];
@@ -39,9 +41,11 @@ export function CompanionPanel({ session }: { readonly session: SessionView }): 
     <section aria-label={t("companion.title")}>
       <h2 className={cockpit.sectionTitle}>{t("companion.title")}</h2>
       {shown.companion === null ? (
-        <p className={live.soft}>{t("companion.help")}</p>
+        <p className={live.soft}>
+          {t("companion.help")} {t("companion.consent")}
+        </p>
       ) : (
-        <InUse shown={shown} />
+        <InUse session={session} shown={shown} />
       )}
       <Choice session={session} shown={shown} />
       <Link href="/trackers" className={live.soft ?? ""}>
@@ -51,19 +55,28 @@ export function CompanionPanel({ session }: { readonly session: SessionView }): 
   );
 }
 
-function InUse({ shown }: { readonly shown: SessionCompanion }): JSX.Element {
+function InUse({ session, shown }: ChoiceProps): JSX.Element {
   const { t, language } = useTexts();
-  const { headset, body, latency_ms, latency_p95_ms, stored, waiting_lost } = shown;
+  const { companion, headset, body, latency_ms, latency_p95_ms, stored, waiting_lost } = shown;
+  const isStill = body != null && body.state !== "ready";
+  const isSilent = body?.state === "absent" || body?.state === "silent";
+  const door = companion?.door ?? null;
+  const isClosed = useIsDoorClosed(door, isSilent);
   const one = (value: number) => decimals(value, language, 1);
   const others = body?.others ?? [];
   const listed = [...(body?.missing ?? []), ...(body?.problems ?? [])].join(", ");
   return (
     <>
       <output className={live.status}>
-        <Icon name={headset === "seen" ? "check" : "info"} size={14} />
-        {t(`companion.now.${headset}`)}
+        <Icon name={headset === "seen" && !isStill ? "check" : "info"} size={14} />
+        {headset === "seen"
+          ? t(isStill ? "companion.now.still" : "companion.now.seen")
+          : headset === "hidden"
+            ? t(`companion.hidden.${hiddenBecause(session, companion?.in_tasks ?? false)}`)
+            : t("companion.now.away")}
       </output>
-      {body != null && body.state !== "ready" && body.state !== "refused" && (
+      {isClosed && door !== null && <ClosedDoor door={door} />}
+      {!isClosed && body != null && body.state !== "ready" && body.state !== "refused" && (
         <Notice tone="warn" title={t(`companion.body.${body.state}`, { listed })} />
       )}
       {others.length > 0 && (

@@ -2,7 +2,9 @@
 export const companionEn = {
   "companion.title": "Companion",
   "companion.help":
-    "Somebody in motion capture whom the participant sees as another person, between tasks and in free movement. Their own mirror and boxes stay free.",
+    "Somebody in motion capture whom the participant sees as another person, between tasks and in free movement. The participant's mirror and boxes stay free.",
+  "companion.consent":
+    "The performer must have agreed to be recorded: what is shown is stored with the session.",
   "companion.performer": "Performer",
   "companion.nobody": "Choose a performer",
   "companion.silentPerformer": "{{name}} (sends nothing)",
@@ -18,14 +20,19 @@ export const companionEn = {
   "companion.inTasks.hint": "Then tasks look different from those of other participants.",
   "companion.show": "Show to the participant",
   "companion.apply": "Apply changes",
-  "companion.remove": "Show nobody",
+  "companion.remove": "Stop showing",
   "companion.now.away": "The headset is not here yet",
-  "companion.now.hidden": "Not seen at the moment",
-  "companion.now.seen": "The participant sees them now",
-  "companion.body.absent": "The performer sends nothing: open their door on the page Trackers.",
-  "companion.body.silent": "The performer has fallen silent; they stand still in the headset.",
+  "companion.now.seen": "The participant sees the companion now",
+  "companion.now.still": "Shown, standing still",
+  "companion.hidden.body": "Not seen before the body has appeared",
+  "companion.hidden.task": "Not seen during a task",
+  "companion.hidden.road": "Not seen on the road",
+  "companion.hidden.moment": "Not seen at the moment",
+  "companion.body.absent": "The performer sends nothing: start sending in the tracking software.",
+  "companion.body.silent":
+    "The performer has fallen silent; the companion stands still in the headset.",
   "companion.body.gathering": "Not all bones have been seen: {{listed}}",
-  "companion.body.unusable": "Their skeleton cannot be used: {{listed}}",
+  "companion.body.unusable": "The performer's skeleton cannot be used: {{listed}}",
   "companion.others": "Two senders have this name",
   "companion.others.body":
     "Only {{address}} is used, not {{others}}. Switch the other off, or give it another name.",
@@ -39,7 +46,9 @@ export const companionEn = {
 export const companionDe: Readonly<Record<keyof typeof companionEn, string>> = {
   "companion.title": "Begleitperson",
   "companion.help":
-    "Jemand in der Bewegungserfassung, den die Versuchsperson als andere Person sieht, zwischen den Aufgaben und in der freien Bewegung. Spiegel und Boxen bleiben frei.",
+    "Jemand in der Bewegungserfassung, den die Versuchsperson als andere Person sieht, zwischen den Aufgaben und in der freien Bewegung. Spiegel und Boxen der Versuchsperson bleiben frei.",
+  "companion.consent":
+    "Der Darsteller muss der Aufzeichnung zugestimmt haben: Was gezeigt wird, wird mit der Sitzung gespeichert.",
   "companion.performer": "Darsteller",
   "companion.nobody": "Darsteller wählen",
   "companion.silentPerformer": "{{name}} (sendet nichts)",
@@ -55,12 +64,16 @@ export const companionDe: Readonly<Record<keyof typeof companionEn, string>> = {
   "companion.inTasks.hint": "Aufgaben sehen dann anders aus als bei anderen Personen.",
   "companion.show": "Der Versuchsperson zeigen",
   "companion.apply": "Änderungen übernehmen",
-  "companion.remove": "Niemanden zeigen",
+  "companion.remove": "Nicht mehr zeigen",
   "companion.now.away": "Das Headset ist noch nicht da",
-  "companion.now.hidden": "Im Moment nicht zu sehen",
-  "companion.now.seen": "Die Versuchsperson sieht sie jetzt",
+  "companion.now.seen": "Die Versuchsperson sieht die Begleitperson jetzt",
+  "companion.now.still": "Gezeigt, steht still",
+  "companion.hidden.body": "Nicht zu sehen, bevor der Körper erschienen ist",
+  "companion.hidden.task": "Während einer Aufgabe nicht zu sehen",
+  "companion.hidden.road": "Auf der Straße nicht zu sehen",
+  "companion.hidden.moment": "Im Moment nicht zu sehen",
   "companion.body.absent":
-    "Der Darsteller sendet nichts: Öffnen Sie seine Tür auf der Seite Tracker.",
+    "Der Darsteller sendet nichts: Starten Sie das Senden in der Tracking-Software.",
   "companion.body.silent":
     "Der Darsteller ist verstummt; im Headset steht die Begleitperson still.",
   "companion.body.gathering": "Noch sind nicht alle Knochen gekommen: {{listed}}",

@@ -79,6 +79,7 @@ interface PhaseRowProps {
 
 function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
   const { t, language } = useTexts();
+  const isRoad = phase.kind === "road_crossing";
   const voided = phase.status === "voided";
   return (
     <tr className={voided ? classes.voided : undefined}>
@@ -96,9 +97,11 @@ function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
       </td>
       <td>{number(phase.active_s, language, 1)} s</td>
       <td>{phase.completions ?? "–"}</td>
-      <td>{phase.side_contacts ?? "–"}</td>
+      <td>{isRoad ? "–" : (phase.side_contacts ?? "–")}</td>
       <td>
-        {phase.side_contact_s === null ? "–" : `${number(phase.side_contact_s, language, 1)} s`}
+        {isRoad || phase.side_contact_s === null
+          ? "–"
+          : `${number(phase.side_contact_s, language, 1)} s`}
       </td>
       <td>
         <ReplayLink session={session} phase={phase} />

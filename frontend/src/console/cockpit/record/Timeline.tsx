@@ -105,8 +105,10 @@ function StepDetails({ step, phase }: StepRowProps): JSX.Element | null {
   else if (phase !== undefined && step.status === "done" && isCounted(step)) {
     // A blinded reader gets the counts once the phase has ended.
     const { completions, side_contacts: contacts } = phase;
-    if (completions !== null) parts.push(t("timeline.completions", { count: completions }));
-    if (contacts !== null) parts.push(t("timeline.contacts", { count: contacts }));
+    const isRoad = step.kind === "road_crossing";
+    const counted = isRoad ? "timeline.crossings" : "timeline.completions";
+    if (completions !== null) parts.push(t(counted, { count: completions }));
+    if (contacts !== null && !isRoad) parts.push(t("timeline.contacts", { count: contacts }));
   } else if (step.duration_s !== null && step.status !== "done") {
     parts.push(duration(seconds(step.duration_s)));
   }

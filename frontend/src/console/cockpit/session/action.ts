@@ -33,6 +33,19 @@ export function guidance(session: SessionView): Key {
   return isForm(step) && step.forms === "headset" ? "step.askInHeadset" : stepText("guide", step);
 }
 
+/** Why the headset shows no companion now; `moment`: for something that the steps do not tell. */
+export function hiddenBecause(
+  session: SessionView,
+  inTasks: boolean,
+): "body" | "task" | "road" | "moment" {
+  const { current, steps } = session;
+  const appears = steps.findIndex(({ kind }) => kind === "materialise");
+  if (current === null || current.index <= appears) return "body";
+  const step = currentStep(session);
+  if (step?.kind === "road_crossing") return "road";
+  return !inTasks && step !== null && isTimed(step) && step.limb !== null ? "task" : "moment";
+}
+
 export type Reasoned = Extract<
   CommandType,
   "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent"

@@ -13,6 +13,7 @@ import { type Key, useTexts } from "../../i18n";
 import { sessionTrackersQuery } from "../../queries";
 import cockpit from "../Cockpit.module.css";
 import live from "../Live.module.css";
+import { ClosedDoor, useIsDoorClosed } from "./ClosedDoor";
 import classes from "./LabTrackersPanel.module.css";
 
 type Choice = SessionTrackers["choices"][number];
@@ -60,7 +61,7 @@ export function LabTrackersPanel({ session }: { readonly session: SessionView })
       {shown.status === null || shown.status === undefined ? (
         <p className={live.soft}>{t("lab.help")}</p>
       ) : (
-        <InUse shown={shown} />
+        <InUse shown={shown} isSilent={choices[chosen]?.is_silent ?? false} />
       )}
       <Link href="/trackers" className={live.soft ?? ""}>
         {t("lab.page")}
@@ -76,17 +77,29 @@ function choicesOf({ door, source, choices }: SessionTrackers): readonly Choice[
   return [...choices, { door, source, is_silent: true, limbs: 0, has_reference: false }];
 }
 
-function InUse({ shown }: { readonly shown: SessionTrackers }): JSX.Element {
+interface InUseProps {
+  readonly shown: SessionTrackers;
+  readonly isSilent: boolean;
+}
+
+function InUse({ shown, isSilent }: InUseProps): JSX.Element {
   const { t, language } = useTexts();
   const { status, looking, problem, others = [], doubled = [], waiting_lost = 0 } = shown;
   const isAligned = status === "aligned";
+  const isClosed = useIsDoorClosed(shown.door, isSilent);
   return (
     <>
-      <output className={live.status}>
-        <Icon name={isAligned ? "check" : "alert"} size={14} />
-        {t(`lab.status.${status}` as Key)}
-      </output>
-      {!isAligned && <p className={live.soft}>{t(`lab.status.${status}.do` as Key)}</p>}
+      {isClosed && shown.door !== null ? (
+        <ClosedDoor door={shown.door} />
+      ) : (
+        <>
+          <output className={live.status}>
+            <Icon name={isAligned ? "check" : "alert"} size={14} />
+            {t(`lab.status.${status}` as Key)}
+          </output>
+          {!isAligned && <p className={live.soft}>{t(`lab.status.${status}.do` as Key)}</p>}
+        </>
+      )}
       {status === "looking" && looking != null && (
         <>
           <Progress value={100 * looking.progress} aria-label={t("lab.status.looking")} />

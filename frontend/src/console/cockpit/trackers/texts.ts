@@ -7,6 +7,8 @@ export const labTrackersEn = {
   "lab.help":
     "Fix one of the trackers to the headset and give it the limb Head; those on the shins make foot tasks possible.",
   "lab.page": "Doors and limbs",
+  "lab.closed": "The door is closed",
+  "lab.closed.body": "Nothing comes from {{door}} until it is open again.",
   "lab.status.no_reference": "No tracker is on the headset",
   "lab.status.no_reference.do": "Fix one there, and give it the limb Head.",
   "lab.status.silent": "The tracker on the headset sends nothing",
@@ -60,6 +62,8 @@ export const labTrackersDe: Readonly<Record<keyof typeof labTrackersEn, string>>
   "lab.help":
     "Befestigen Sie einen der Tracker am Headset und geben Sie ihm den Körperteil Kopf; die an den Unterschenkeln ermöglichen Aufgaben mit dem Fuß.",
   "lab.page": "Türen und Körperteile",
+  "lab.closed": "Die Tür ist geschlossen",
+  "lab.closed.body": "Von {{door}} kommt nichts, bis sie wieder offen ist.",
   "lab.status.no_reference": "Kein Tracker ist am Headset",
   "lab.status.no_reference.do": "Befestigen Sie dort einen und geben Sie ihm den Körperteil Kopf.",
   "lab.status.silent": "Der Tracker am Headset sendet nichts",

@@ -11,6 +11,7 @@ import { usePermissions } from "../../permissions";
 import { trackersQuery } from "../../queries";
 import { Copyable } from "../network/Copyable";
 import { actorName } from "../people/auditWords";
+import { CloseDoor } from "./CloseDoor";
 import classes from "./Trackers.module.css";
 
 type State = "closed" | "opening" | "open" | "failed" | "waiting";
@@ -58,14 +59,12 @@ export function DoorCard({ door, interfaces }: DoorCardProps): JSX.Element {
       {door.is_open ? <Opened door={door} /> : null}
       {set.isError && <Failure error={set.error} />}
       {canSet && door.is_open && (
-        <Button
-          variant="default"
-          aria-label={t("trackers.closeDoor", { door: name })}
-          loading={set.isPending}
-          onClick={() => set.mutate({ ...settings(door), is_open: false })}
-        >
-          {t("trackers.close")}
-        </Button>
+        <CloseDoor
+          door={door.door}
+          name={name}
+          isClosing={set.isPending}
+          onClose={() => set.mutate({ ...settings(door), is_open: false })}
+        />
       )}
       {canSet && !door.is_open && (
         <Opening

@@ -21,7 +21,17 @@ export function HowToConnect({ doors }: { readonly doors: readonly Door[] }): JS
         {SOFTWARE.map((one) => (
           <div key={one}>
             <h3>{t(`trackers.help.${one}`)}</h3>
-            <p>{t(`trackers.help.${one}.body`)}</p>
+            <p>
+              {t(`trackers.help.${one}.body`)}
+              {one === "script" && (
+                <>
+                  {" "}
+                  <Link href="/help/live/a-skeleton-by-a-script" className={classes.link ?? ""}>
+                    {t("trackers.help.script.more")}
+                  </Link>
+                </>
+              )}
+            </p>
           </div>
         ))}
       </div>

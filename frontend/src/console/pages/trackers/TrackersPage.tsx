@@ -39,6 +39,7 @@ function Parts({ all }: { readonly all: Trackers }): JSX.Element {
   const { t } = useTexts();
   const canOpen = usePermissions()("openDoor");
   const { data: skeletons } = useQuery(performersQuery);
+  const isAnyOpen = all.doors.some((door) => door.is_open);
   return (
     <>
       <section aria-labelledby="doors">
@@ -69,8 +70,8 @@ function Parts({ all }: { readonly all: Trackers }): JSX.Element {
         ))}
         <Recordings all={skeletons?.recordings ?? []} />
         {all.sources.length === 0 ? (
-          <EmptyState icon="plug" title={t("trackers.empty")}>
-            {t("trackers.empty.body")}
+          <EmptyState icon="plug" title={t(isAnyOpen ? "trackers.empty" : "trackers.shut")}>
+            {t(isAnyOpen ? "trackers.empty.body" : "trackers.shut.body")}
           </EmptyState>
         ) : (
           all.sources.map((source) => (

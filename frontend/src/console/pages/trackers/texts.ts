@@ -27,6 +27,13 @@ export const trackersEn = {
   "trackers.openDoor": "Open the door {{door}}",
   "trackers.close": "Close",
   "trackers.closeDoor": "Close the door {{door}}",
+  "trackers.closing.title": "Close the door {{door}}?",
+  "trackers.closing.body":
+    "Sessions that are not over use what comes through it. Until it is open again, they get nothing:",
+  "trackers.closing.trackers": "lab trackers",
+  "trackers.closing.companion": "companion",
+  "trackers.closing.keep": "Keep open",
+  "trackers.closing.anyway": "Close anyway",
   "trackers.mayNot": "Doors are opened and closed by admins and experimenters.",
   "trackers.enter": "Enter in the tracking software:",
   "trackers.asks": "Asks Motive at",
@@ -54,7 +61,10 @@ export const trackersEn = {
   "trackers.sources": "Sources",
   "trackers.empty": "Nothing has arrived yet",
   "trackers.empty.body":
-    "Open a door, enter its address and port in the tracking software, and start sending. How to do that is described below.",
+    "Enter the address and port of the open door in the tracking software, and start sending. How to do that is described below.",
+  "trackers.shut": "All doors are closed",
+  "trackers.shut.body":
+    "Nothing arrives. Open a door, enter its address and port in the tracking software, and start sending. How to do that is described below.",
   "trackers.turnedAway_one":
     "{{count}} packet of further senders was ignored: there are too many at once.",
   "trackers.turnedAway_other":
@@ -114,7 +124,8 @@ export const trackersEn = {
     "Switch on sending by OSC, to the address and port of the door VMC and VRChat. Trackers, bones, headset and controllers arrive; expressions and cameras are left out.",
   "trackers.help.script": "A script of your own",
   "trackers.help.script.body":
-    "Each datagram is one JSON object. Metres, y up, right-handed; rotations in the order w, x, y, z.",
+    "Each datagram is one JSON object. Metres, y up, right-handed; rotations in the order w, x, y, z. Trackers that name their parent are a skeleton:",
+  "trackers.help.script.more": "an example to copy",
   "trackers.help.more": "All details",
 };
 
@@ -146,6 +157,13 @@ export const trackersDe: Readonly<Record<keyof typeof trackersEn, string>> = {
   "trackers.openDoor": "Die Tür {{door}} öffnen",
   "trackers.close": "Schließen",
   "trackers.closeDoor": "Die Tür {{door}} schließen",
+  "trackers.closing.title": "Die Tür {{door}} schließen?",
+  "trackers.closing.body":
+    "Sitzungen, die nicht beendet sind, verwenden, was durch sie kommt. Bis sie wieder offen ist, kommt dort nichts an:",
+  "trackers.closing.trackers": "Tracker des Labors",
+  "trackers.closing.companion": "Begleitperson",
+  "trackers.closing.keep": "Offen lassen",
+  "trackers.closing.anyway": "Trotzdem schließen",
   "trackers.mayNot": "Türen öffnen und schließen Admins und die Versuchsleitung.",
   "trackers.enter": "In der Tracking-Software eingeben:",
   "trackers.asks": "Fragt Motive unter",
@@ -173,7 +191,10 @@ export const trackersDe: Readonly<Record<keyof typeof trackersEn, string>> = {
   "trackers.sources": "Quellen",
   "trackers.empty": "Noch ist nichts angekommen",
   "trackers.empty.body":
-    "Öffnen Sie eine Tür, geben Sie deren Adresse und Port in der Tracking-Software ein, und starten Sie das Senden. Wie das geht, steht unten.",
+    "Geben Sie Adresse und Port der offenen Tür in der Tracking-Software ein, und starten Sie das Senden. Wie das geht, steht unten.",
+  "trackers.shut": "Alle Türen sind geschlossen",
+  "trackers.shut.body":
+    "Es kommt nichts an. Öffnen Sie eine Tür, geben Sie deren Adresse und Port in der Tracking-Software ein, und starten Sie das Senden. Wie das geht, steht unten.",
   "trackers.turnedAway_one":
     "{{count}} Paket weiterer Sender wurde nicht beachtet: Es sind zu viele zugleich.",
   "trackers.turnedAway_other":
@@ -233,6 +254,7 @@ export const trackersDe: Readonly<Record<keyof typeof trackersEn, string>> = {
     "Schalten Sie das Senden über OSC ein, an Adresse und Port der Tür VMC und VRChat. Tracker, Knochen, Headset und Controller kommen an; Mimik und Kameras werden ausgelassen.",
   "trackers.help.script": "Ein eigenes Skript",
   "trackers.help.script.body":
-    "Jedes Datagramm ist ein JSON-Objekt. Meter, y nach oben, rechtshändig; Rotationen in der Reihenfolge w, x, y, z.",
+    "Jedes Datagramm ist ein JSON-Objekt. Meter, y nach oben, rechtshändig; Rotationen in der Reihenfolge w, x, y, z. Tracker, die mit parent ihren Elternknochen nennen, sind ein Skelett:",
+  "trackers.help.script.more": "ein Beispiel zum Kopieren",
   "trackers.help.more": "Alle Einzelheiten",
 };
