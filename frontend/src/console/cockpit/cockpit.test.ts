@@ -6,6 +6,7 @@ import { groupSteps } from "./record/Timeline";
 import {
   awaitsHeadset,
   guidance,
+  hiddenBecause,
   isBlocked,
   lacksHeadset,
   primaryAction,
@@ -96,6 +97,23 @@ describe("the guidance", () => {
     expect(guidance(view(at(2, { status: "walk_back" }), []))).toBe("guide.walk_back");
     expect(guidance(view(at(4), []))).toBe("guide.task.foot");
     expect(guidance(view(null, [], { status: "withdrawn" }))).toBe("guide.withdrawn");
+  });
+});
+
+describe("a companion who is not seen", () => {
+  const appearing = { ...steps[1], kind: "materialise" } as const;
+  const road = { ...steps[4], kind: "road_crossing", limb: null } as const;
+  const own = { steps: steps.map((one, n) => (n === 1 ? appearing : n === 4 ? road : one)) };
+  const because = (index: number | null, inTasks = false) =>
+    hiddenBecause(
+      view(index === null ? null : at(index), [], own as Partial<SessionView>),
+      inTasks,
+    );
+
+  it("is hidden for the reason that the step tells", () => {
+    expect([because(null), because(0), because(1)]).toEqual(["body", "body", "body"]);
+    expect([because(2), because(2, true)]).toEqual(["task", "moment"]);
+    expect([because(3), because(4, true)]).toEqual(["moment", "road"]);
   });
 });
 

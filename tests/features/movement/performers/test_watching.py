@@ -1,10 +1,14 @@
 """Performers on a running server: watched on a body, agreed with, recorded as captures."""
 
 import json
+import re
 import struct
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,6 +27,7 @@ from tests.support.datagrams import free_udp_port, sender
 
 NAME = {"door": "json", "source": "mime", "skeleton": "Hips"}
 WATCH = "/api/trackers/performers/watch?door=json&source=mime&skeleton=Hips"
+REPOSITORY = Path(__file__).resolve().parents[4]
 pytestmark = pytest.mark.one_engine
 
 
@@ -115,6 +120,33 @@ def test_a_page_sees_the_body_that_the_file_would_give(
         socket.send_text("")
         header, _ = pose(socket)
         assert (header[3], header[4]) == (len(packets), len(packets) - 3)
+
+
+def test_the_skeleton_of_the_docs_moves_a_body(fresh_lab: Lab, port: int) -> None:
+    """Copied as it is, the script is a performer who faces -z and waves the left arm."""
+    docs = (REPOSITORY / "docs" / "live.md").read_text(encoding="utf-8")
+    _, script = re.findall(r"```python\n(.*?)```", docs, re.DOTALL)
+    assert "39570" in script
+    running = subprocess.Popen([sys.executable, "-c", script.replace("39570", str(port))])
+    try:
+        (found,) = performers(fresh_lab, lambda view: bool(view["performers"]))["performers"]
+        assert (found["state"], found["bones"], found["skeleton"]) == ("ready", 17, "Hips")
+        name = "door=json&source=waving+script&skeleton=Hips"
+        path = f"/api/trackers/performers/watch?{name}&avatar=170cm&ground=ramp"
+        with fresh_lab.operator.websocket_connect(path) as socket:
+            setup = told(socket, "setup")
+            np.testing.assert_allclose(setup["uphill"], (0, -1), atol=1e-6)
+            arm, turned = setup["joints"].index("LeftUpperArm"), []
+            while len(turned) < 20:
+                message: Any = socket.receive()
+                if message.get("bytes"):
+                    values = np.frombuffer(message["bytes"], dtype="<f4", offset=HEADER.size)
+                    turned.append(values[3 + 4 * arm : 7 + 4 * arm])
+                    socket.send_text("")
+            assert float(np.ptp(turned, axis=0).max()) > 0.01
+    finally:
+        running.kill()
+        running.wait()
 
 
 def taken(lab: Lab) -> int:
