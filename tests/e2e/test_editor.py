@@ -88,6 +88,7 @@ def test_a_study_from_template_to_second_version(
 
     page.get_by_role("button", name="Save the study").click()
     expect(page.get_by_text("Saved as version 1")).to_be_visible()
+    expect(page.get_by_role("link", name="To its page, for a new session")).to_be_visible()
     expect(page.get_by_role("heading", name="Two latencies, hand task")).to_be_visible()
     writer.open_section("Conditions")
     page.get_by_label("Added latency (ms)").nth(1).fill("250")
@@ -101,6 +102,7 @@ def test_a_study_from_template_to_second_version(
     expect(page.get_by_text("Saved as version 2")).to_be_visible()
 
     writer.open_tab("my-study", "versions")
+    expect(page.get_by_role("link", name="To its page, for a new session")).to_be_hidden()
     expect(page.get_by_role("row", name="conditions[1].latency_ms")).to_be_visible()
     assert axe(page) == []
     screenshot(page, "study-versions")

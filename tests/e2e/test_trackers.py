@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 from tests.adapters.live.packets import bundle, vmc
 from tests.e2e.lab_people import make_account
 from tests.e2e.people import PATIENCE_MS, Experimenter
-from tests.features.lab import ok
+from tests.features.lab import STUDY, ok
 from tests.support.datagrams import HERE, free_udp_port, sending
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
@@ -39,6 +39,7 @@ def _watch_and_record(
     panel.get_by_role("button", name="Agree on a pose").click()
     page.get_by_role("menuitem", name="Stands on the floor now").click()
     panel.get_by_role("button", name="Record").click()
+    expect(panel.get_by_role("button", name="Stop and store")).to_be_visible()
     recordings = page.get_by_role("region", name="Recordings")
     expect(recordings.get_by_text(f"Recording {HERE}")).to_be_visible()
     assert axe(page) == []
@@ -61,7 +62,8 @@ def test_trackers_arrive_are_judged_and_are_put_on_limbs(
     """Closed at first; doors are opened, two senders arrive, fall silent, and are forgotten.
 
     A skeleton moves a body, and a recording of it is stored as a capture. A door whose port is
-    taken says so and opens when it is free; an operator opens none.
+    taken says so and opens when it is free; an operator opens none. A door that a session uses is
+    closed after a question, and the session's cockpit says that it is closed.
     """
     page = page_factory()
     experimenter = Experimenter(page, live_server.url)
@@ -129,6 +131,10 @@ def test_trackers_arrive_are_judged_and_are_put_on_limbs(
     with live_server.client() as admin:
         ok(admin.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         invited = ok(admin.post("/api/invitations", json={"role": "operator"}))
+        wish = {"participant_code": "P07"}
+        session = ok(admin.post(f"/api/studies/{STUDY}/sessions", json=wish))["id"]
+        chosen = {"door": "json", "source": "shoe script"}
+        ok(admin.put(f"/api/sessions/{session}/trackers", json=chosen))
     make_account(operator, invited["url"], "otto")
     operator.goto(f"{live_server.url}/#/trackers")
     expect(operator.get_by_text("opened and closed by admins")).to_be_visible()
@@ -137,8 +143,22 @@ def test_trackers_arrive_are_judged_and_are_put_on_limbs(
     assert axe(operator) == []
     screenshot(operator, "trackers-operator")
 
-    for name in ports:
-        page.get_by_role("button", name=f"Close the door {name}").click()
+    page.get_by_role("button", name="Close the door VMC and VRChat").click()
+    page.get_by_role("button", name="Close the door Scripts").click()
+    question = page.get_by_role("dialog", name="Close the door Scripts?")
+    expect(question.get_by_role("listitem")).to_have_text(["P07: lab trackers"])
+    page.wait_for_timeout(300)  # The dialog fades in; until then its colours are no colours.
+    assert axe(page) == []
+    screenshot(page, "trackers-closing")
+    question.get_by_role("button", name="Keep open").click()
+    expect(question).to_be_hidden()
+    page.get_by_role("button", name="Close the door Scripts").click()
+    question.get_by_role("button", name="Close anyway").click()
     expect(page.get_by_role("heading", name="All doors are closed")).to_be_visible()
+    page.goto(f"{live_server.url}/#/sessions/{session}")
+    lab = page.get_by_role("region", name="Lab trackers")
+    expect(lab.get_by_text("The door is closed")).to_be_visible(timeout=PATIENCE_MS)
+    lab.scroll_into_view_if_needed()
+    screenshot(page, "trackers-closed-door")
     page.goto(f"{live_server.url}/#/people/audit")
     expect(page.get_by_text("closed the door Scripts for trackers")).to_have_count(2)

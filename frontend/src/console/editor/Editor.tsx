@@ -136,7 +136,6 @@ function Bar({ draft, studyKey, title, unsaved, onSave }: BarProps): JSX.Element
       const here = `/studies/${study.key}/edit`;
       navigate(here);
       notifications.show({
-        id: SAVED,
         message:
           studyKey === null ? (
             <SavedNote saved={saved} here={here} next={`#/studies/${study.key}`}>
@@ -145,7 +144,7 @@ function Bar({ draft, studyKey, title, unsaved, onSave }: BarProps): JSX.Element
           ) : (
             saved
           ),
-        ...(studyKey === null && { autoClose: WITH_LINK_MS }),
+        ...(studyKey === null && { id: SAVED, autoClose: WITH_LINK_MS }),
         closeButtonProps: { "aria-label": t("action.close") },
       });
     },
