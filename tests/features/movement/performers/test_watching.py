@@ -136,7 +136,8 @@ def test_the_skeleton_of_the_docs_moves_a_body(fresh_lab: Lab, port: int) -> Non
         with fresh_lab.operator.websocket_connect(path) as socket:
             setup = told(socket, "setup")
             np.testing.assert_allclose(setup["uphill"], (0, -1), atol=1e-6)
-            arm, turned = setup["joints"].index("LeftUpperArm"), []
+            arm = setup["joints"].index("LeftUpperArm")
+            turned: list[Any] = []
             while len(turned) < 20:
                 message: Any = socket.receive()
                 if message.get("bytes"):

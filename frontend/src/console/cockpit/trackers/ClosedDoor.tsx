@@ -18,16 +18,18 @@ export function useIsDoorClosed(door: Door["door"] | null, isSilent: boolean): b
 export function ClosedDoor({ door }: { readonly door: Door["door"] }): JSX.Element {
   const { t } = useTexts();
   return (
-    <Notice
-      tone="warn"
-      title={t("lab.closed")}
-      actions={
-        <Link href="/trackers" className={classes.link ?? ""}>
-          {t("lab.page")}
-        </Link>
-      }
-    >
-      {t("lab.closed.body", { door: t(`trackers.door.${door}`) })}
-    </Notice>
+    <div className={classes.closed}>
+      <Notice
+        tone="warn"
+        title={t("lab.closed")}
+        actions={
+          <Link href="/trackers" className={classes.link ?? ""}>
+            {t("lab.page")}
+          </Link>
+        }
+      >
+        {t("lab.closed.body", { door: t(`trackers.door.${door}`) })}
+      </Notice>
+    </div>
   );
 }
