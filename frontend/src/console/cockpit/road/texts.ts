@@ -36,7 +36,7 @@ export const roadEn = {
 
 export const roadDe: Record<keyof typeof roadEn, string> = {
   "road.title": "Straße",
-  "road.waits": "Beginnt mit der Phase, sobald die Person auf dem Startfeld steht",
+  "road.waits": "Beginnt mit der Phase, sobald die Person auf dem Startquadrat steht",
   "road.unconnected": "Wartet, bis sich ein Programm verbindet: {{programs}}",
   "road.runs_one": "{{count}} Auto auf der Straße",
   "road.runs_other": "{{count}} Autos auf der Straße",
