@@ -11,7 +11,7 @@ import { actorName } from "../pages/people/auditWords";
 import { usePermissions } from "../permissions";
 import { performersQuery } from "../queries";
 import classes from "./Performer.module.css";
-import { type Stored, StoredNotice, useStoring } from "./Storing";
+import { StoreButton, type Stored, StoredNotice, useStoring } from "./Storing";
 import { titleOf } from "./WatchPanel";
 
 export function Recordings({ all }: { readonly all: readonly Recording[] }): JSX.Element | null {
@@ -74,14 +74,7 @@ function Going({ recording, onStored }: GoingProps): JSX.Element {
       </div>
       {canRecord && (
         <div className={classes.actions}>
-          <Button
-            size="xs"
-            loading={store.isPending}
-            disabled={recording.frames === 0}
-            onClick={() => store.mutate(recording)}
-          >
-            {t(isRunning ? "performer.stop" : "performer.store")}
-          </Button>
+          <StoreButton recording={recording} store={store} />
           <Button
             size="xs"
             variant="default"

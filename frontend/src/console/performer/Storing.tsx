@@ -71,3 +71,24 @@ export function StoredNotice({ stored, onClose }: StoredNoticeProps): JSX.Elemen
     </Notice>
   );
 }
+
+/** Ends a recording that still runs, and stores it. */
+export function StoreButton({
+  recording,
+  store,
+}: {
+  readonly recording: Recording;
+  readonly store: ReturnType<typeof useStoring>;
+}): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Button
+      size="xs"
+      loading={store.isPending}
+      disabled={recording.frames === 0}
+      onClick={() => store.mutate(recording)}
+    >
+      {t(recording.state === "running" ? "performer.stop" : "performer.store")}
+    </Button>
+  );
+}

@@ -34,7 +34,7 @@ import { useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
 import { performersQuery } from "../queries";
 import classes from "./Performer.module.css";
-import { type Stored, StoredNotice, useStoring } from "./Storing";
+import { StoreButton, type Stored, StoredNotice, useStoring } from "./Storing";
 import { useWatched, type Watched } from "./useWatched";
 
 const GROUNDS: readonly GroundKey[] = ["flat", "ramp", "kerb", "steps"];
@@ -329,14 +329,7 @@ function Record({ performer, recording, onStored }: RecordProps): JSX.Element | 
         <span className={`${classes.dot} ${isRunning ? classes.running : ""}`} aria-hidden />
         {duration(seconds(recording.duration_s))}
       </span>
-      <Button
-        size="xs"
-        loading={store.isPending}
-        disabled={recording.frames === 0}
-        onClick={() => store.mutate(recording)}
-      >
-        {t(isRunning ? "performer.stop" : "performer.store")}
-      </Button>
+      <StoreButton recording={recording} store={store} />
     </>
   );
 }
