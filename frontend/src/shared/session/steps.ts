@@ -45,6 +45,15 @@ export const isForm = ({ kind }: OfKind): boolean => KINDS[kind].family === "for
 /** Whether a step's phases are the study's data; all others are in no figure or test. */
 export const isCounted = ({ kind }: OfKind): boolean => KINDS[kind].counts;
 
+/** Whether a step's phases are crossings of the road: the study's data, without boxes. */
+export const isCrossing = ({ kind }: OfKind): boolean =>
+  isTimed({ kind }) && isCounted({ kind }) && KINDS[kind].limbs.length === 0;
+
+/** The kind of the steps that are crossings of the road. */
+export const CROSSING = (Object.keys(KINDS) as StepKind[]).find((kind) =>
+  isCrossing({ kind }),
+) as StepKind;
+
 /** Whether the experimenter completes a step with a plain button; height and consent have forms. */
 export const isCompletedByButton = ({ kind }: OfKind): boolean => KINDS[kind].isCompletedByButton;
 

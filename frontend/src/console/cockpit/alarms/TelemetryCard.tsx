@@ -1,6 +1,8 @@
 /** What the headset reports right now. */
+
 import type { SessionView } from "@shared/api/types";
 import { number } from "@shared/format";
+import { isCrossing } from "@shared/session/steps";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
@@ -22,9 +24,7 @@ export function TelemetryCard({ session, store }: TelemetryCardProps): JSX.Eleme
   const telemetry = received?.telemetry;
   const completions = telemetry?.completions ?? phase?.completions ?? null;
   // There are no boxes on a road, whose sides could be touched.
-  const isRoad = session.steps.some(
-    ({ index, kind }) => index === phase?.step_index && kind === "road_crossing",
-  );
+  const isRoad = session.steps.some((step) => step.index === phase?.step_index && isCrossing(step));
   const figures = isRoad
     ? ([["crossings", completions, ""]] as const)
     : ([

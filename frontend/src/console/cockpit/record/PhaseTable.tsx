@@ -1,7 +1,9 @@
 /** What was recorded in each phase, once the session is over. */
+
 import { ActionIcon, Button } from "@mantine/core";
 import type { PhaseSummary, SessionView } from "@shared/api/types";
 import { latency, number } from "@shared/format";
+import { isCrossing } from "@shared/session/steps";
 import { Icon } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
@@ -79,7 +81,7 @@ interface PhaseRowProps {
 
 function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
   const { t, language } = useTexts();
-  const isRoad = phase.kind === "road_crossing";
+  const isRoad = isCrossing(phase);
   const voided = phase.status === "voided";
   return (
     <tr className={voided ? classes.voided : undefined}>

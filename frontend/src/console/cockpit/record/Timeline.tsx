@@ -1,6 +1,8 @@
 /** The procedure from top to bottom: steps that are done, running and to come. */
+
 import type { PhaseSummary, SessionView, Step } from "@shared/api/types";
 import { duration, latency } from "@shared/format";
+import { isCrossing } from "@shared/session/steps";
 import { milliseconds, seconds } from "@shared/units";
 import { type JSX, useEffect, useRef } from "react";
 import { useTexts } from "../../i18n";
@@ -105,7 +107,7 @@ function StepDetails({ step, phase }: StepRowProps): JSX.Element | null {
   else if (phase !== undefined && step.status === "done" && isCounted(step)) {
     // A blinded reader gets the counts once the phase has ended.
     const { completions, side_contacts: contacts } = phase;
-    const isRoad = step.kind === "road_crossing";
+    const isRoad = isCrossing(step);
     const counted = isRoad ? "timeline.crossings" : "timeline.completions";
     if (completions !== null) parts.push(t(counted, { count: completions }));
     if (contacts !== null && !isRoad) parts.push(t("timeline.contacts", { count: contacts }));

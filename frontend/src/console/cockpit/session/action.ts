@@ -2,8 +2,10 @@
  * Derive from the session what an operator may do, which commands need a reason, and which steps
  * can be repeated.
  */
+
 import type { CommandType, SessionView, Step } from "@shared/api/types";
 import { currentStep, isConnected, lacksHeadset } from "@shared/session/nextAction";
+import { isCrossing } from "@shared/session/steps";
 import type { Key } from "../../i18n";
 import { isForm, isTimed, stepText } from "../../steps";
 
@@ -26,7 +28,7 @@ export function guidance(session: SessionView): Key {
   if (session.status === "completed" && session.simulated) return "guide.completed.simulated";
   if (session.status !== "active" && session.status !== "planned") return `guide.${session.status}`;
   if (step === null || session.current === null) return "guide.planned";
-  if (session.current.status === "preparing" && step.kind === "road_crossing") {
+  if (session.current.status === "preparing" && isCrossing(step)) {
     return "guide.preparing.road";
   }
   if (session.current.status !== "ready") return `guide.${session.current.status}`;
@@ -42,7 +44,7 @@ export function hiddenBecause(
   const appears = steps.findIndex(({ kind }) => kind === "materialise");
   if (current === null || current.index <= appears) return "body";
   const step = currentStep(session);
-  if (step?.kind === "road_crossing") return "road";
+  if (step !== null && isCrossing(step)) return "road";
   return !inTasks && step !== null && isTimed(step) && step.limb !== null ? "task" : "moment";
 }
 

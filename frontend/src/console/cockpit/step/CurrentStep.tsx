@@ -1,7 +1,9 @@
 /** The current step, and the one large button that moves the session forward. */
+
 import { Button, Loader, Menu } from "@mantine/core";
 import type { SessionView, Step } from "@shared/api/types";
 import { latency } from "@shared/format";
+import { isCrossing } from "@shared/session/steps";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { milliseconds } from "@shared/units";
@@ -114,7 +116,7 @@ function StepPosition({ session, step }: { readonly session: SessionView; readon
   } else if (step.block !== null) parts.push(t("step.latencyHidden"));
   if (step.body !== null) parts.push(t("overview.body", { body: step.body }));
   if (step.until_completions != null) {
-    const until = step.kind === "road_crossing" ? "road.until" : "practice.until";
+    const until = isCrossing(step) ? "road.until" : "practice.until";
     parts.push(t(until, { count: step.until_completions }));
   }
   if (step.avatar_changes != null) {

@@ -1,8 +1,10 @@
 /** The large clock of active time. It never shows more than the last report supports. */
+
 import type { SessionRoad } from "@shared/api/road";
 import type { Current, SessionView } from "@shared/api/types";
 import { activeAt, type ClockReport, isHolding } from "@shared/clock";
 import { clockFace } from "@shared/format";
+import { isCrossing } from "@shared/session/steps";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { type Milliseconds, milliseconds, type Seconds, seconds } from "@shared/units";
 import { useQuery } from "@tanstack/react-query";
@@ -33,7 +35,7 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
   const now = useNow(report.running);
   const { current } = session;
   const step = session.steps[current?.index ?? -1];
-  const isOnRoad = current?.status === "preparing" && step?.kind === "road_crossing";
+  const isOnRoad = current?.status === "preparing" && step !== undefined && isCrossing(step);
   const { data: road } = useQuery({ ...sessionRoadQuery(session.id), enabled: isOnRoad });
   // A calibration and the traffic are shown as such; else only a scene that nobody sees holds it up.
   const isPending = current?.resuming === true && !SHOWN_ELSEWHERE.has(current.pause_reason ?? "");

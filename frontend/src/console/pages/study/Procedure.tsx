@@ -2,6 +2,7 @@
  * The procedure of one session from left to right; timed parts show their seconds, phases are to
  * scale.
  */
+
 import type {
   CrossingPhase,
   SetupStep,
@@ -11,6 +12,7 @@ import type {
   TaskPhase,
 } from "@shared/api/types";
 import { duration, number } from "@shared/format";
+import { CROSSING } from "@shared/session/steps";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { seconds } from "@shared/units";
 import type { JSX } from "react";
@@ -38,7 +40,7 @@ export function Procedure({ study, protocol }: ProcedureProps): JSX.Element {
             {block.crossing !== undefined && (
               <Phase
                 phase={block.crossing}
-                step={CROSSING}
+                step={CROSSED}
                 until={t("procedure.crossings", { count: block.crossing.crossings })}
               />
             )}
@@ -75,7 +77,7 @@ interface PartProps {
 /** A step of the file in the form of a session's steps. */
 const named = ({ step, limb }: SetupStep) => ({ kind: step, limb: limb ?? null });
 
-const CROSSING = { kind: "road_crossing", limb: null } as const;
+const CROSSED = { kind: CROSSING, limb: null };
 const QUESTIONNAIRE = { kind: "questionnaire", limb: null } as const;
 
 function Part({ name, kind, steps }: PartProps): JSX.Element {
