@@ -54,7 +54,7 @@ export class PerformerScene extends Space3d {
 
   /** Throws if the browser has no WebGL. */
   constructor(canvas: HTMLCanvasElement) {
-    super(new PerspectiveCamera(VIEW_DEG, 1, 0.05, 200), { canvas, isLive: true });
+    super(new PerspectiveCamera(VIEW_DEG, 1, 0.05, 200), { canvas });
     this.#controls = new OrbitControls(this.camera, canvas);
     this.#controls.enableDamping = false;
     this.#controls.maxPolarAngle = 0.495 * Math.PI;

@@ -19,11 +19,7 @@ import { Body3d } from "./body3d";
 import type { Block, BlockTones, Figure, StagePalette } from "./figure";
 import type { FloorPlan } from "./floor";
 import { disposeFloor, makeFloor, turnLabels } from "./floor3d";
-import { isDrawnInSoftware, Sharpness } from "./graphics";
 import { SkinnedBody3d } from "./skin/skinnedBody3d";
-
-/** After so long without a picture, the last one is drawn finely, ms. */
-const REST_MS = 250;
 
 /** A figure in the scene: a skeleton, or the body that it wears. */
 export type StageBody = Body3d | SkinnedBody3d;
@@ -38,25 +34,16 @@ export abstract class Space3d {
   protected readonly scene = new Scene();
   protected bodies: readonly StageBody[] = [];
   protected blocks: Blocks3d | null = null;
-  readonly #sharpness: Sharpness | null;
   #floor: Group | null = null;
   #frameRequest = 0;
-  #restTimer = 0;
 
-  /**
-   * `isLive`: what it shows moves now, so it draws coarsely rather than late. Throws if the browser
-   * has no WebGL.
-   */
+  /** Throws if the browser has no WebGL. */
   constructor(
     protected readonly camera: PerspectiveCamera,
-    { isLive = false, ...canvas }: WebGLRendererParameters & { readonly isLive?: boolean },
+    canvas: WebGLRendererParameters,
   ) {
-    const isSlow = isLive && isDrawnInSoftware();
-    this.renderer = new WebGLRenderer({ antialias: !isSlow, ...canvas });
-    // Without a graphics card smooth edges would cost most of the time: at rest, pixels smooth them.
-    const ratio = isSlow ? 2 : Math.min(window.devicePixelRatio, 2);
-    this.renderer.setPixelRatio(ratio);
-    this.#sharpness = isLive ? new Sharpness(ratio, isSlow ? 1 : ratio) : null;
+    this.renderer = new WebGLRenderer({ antialias: true, ...canvas });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     const sun = new DirectionalLight("#ffffff", 2.1);
     sun.position.set(2, 6, 3);
     // Bodies usually face away from the sun, -z: this light keeps faces from lying in the dark.
@@ -84,7 +71,6 @@ export abstract class Space3d {
 
   dispose(): void {
     cancelAnimationFrame(this.#frameRequest);
-    window.clearTimeout(this.#restTimer);
     this.#clearBodies();
     this.#clearBlocks();
     this.#clearFloor();
@@ -119,29 +105,7 @@ export abstract class Space3d {
 
   protected requestPicture(): void {
     if (this.#frameRequest !== 0) return;
-    this.#frameRequest = requestAnimationFrame((nowMs) => {
-      this.#keepUp(nowMs);
-      this.#draw();
-    });
-  }
-
-  /** Choose the pixels of a picture that is drawn now, and of the one that follows at rest. */
-  #keepUp(nowMs: number): void {
-    const sharpness = this.#sharpness;
-    if (sharpness === null) return;
-    requestAnimationFrame((nextMs) => sharpness.note(nextMs - nowMs));
-    this.#drawWith(sharpness.moving);
-    window.clearTimeout(this.#restTimer);
-    this.#restTimer = window.setTimeout(() => {
-      if (this.#drawWith(sharpness.still)) this.#draw();
-    }, REST_MS);
-  }
-
-  /** Return whether the ratio is another one; the picture is empty then. */
-  #drawWith(pixelRatio: number): boolean {
-    if (this.renderer.getPixelRatio() === pixelRatio) return false;
-    this.renderer.setPixelRatio(pixelRatio);
-    return true;
+    this.#frameRequest = requestAnimationFrame(() => this.#draw());
   }
 
   #draw(): void {

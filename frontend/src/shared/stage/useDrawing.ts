@@ -1,6 +1,5 @@
 /** A 3-D drawing on a canvas of its own, as large as its parent element. */
 import { type RefObject, useEffect, useState } from "react";
-import { hasWebGl } from "./graphics";
 
 interface Drawing {
   resize(width: number, height: number): void;
@@ -71,5 +70,16 @@ function mount<T extends Drawing>(element: HTMLElement, make: (canvas: HTMLCanva
   } catch {
     canvas.remove();
     return null;
+  }
+}
+
+/** Checked beforehand, because the library logs errors if there is no WebGL. */
+function hasWebGl(): boolean {
+  try {
+    const context = document.createElement("canvas").getContext("webgl2");
+    context?.getExtension("WEBGL_lose_context")?.loseContext();
+    return context !== null;
+  } catch {
+    return false;
   }
 }

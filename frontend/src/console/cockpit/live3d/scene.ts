@@ -40,7 +40,7 @@ export class LiveScene extends Space3d {
 
   /** Throws if the browser has no WebGL. */
   constructor(canvas: HTMLCanvasElement) {
-    super(new PerspectiveCamera(45, 1, 0.08, 60), { canvas, alpha: true, isLive: true });
+    super(new PerspectiveCamera(45, 1, 0.08, 60), { canvas, alpha: true });
   }
 
   /**
