@@ -1,10 +1,5 @@
-"""Store in which poses a companion was shown to a session's participant.
+"""Store in which poses a companion was shown to a session's participant."""
 
-Poses wait in memory for about a second, and are kept until they are on disk.
-"""
-
-import threading
-from collections import deque
 from datetime import datetime, timedelta
 from itertools import groupby
 
@@ -18,41 +13,12 @@ from app.science.skeleton import JOINT_NAMES
 
 MAX_WAITING = 40_000
 """The most poses of a session that wait for the disk: minutes of a companion."""
-Waiting = tuple[Companion, ShownFrame]
-
-
-class WaitingFrames:
-    """The poses of a session that are not on disk yet; safe from any thread."""
-
-    def __init__(self) -> None:
-        self.lost = 0
-        """Poses that were discarded because too many waited: the disk was full for minutes."""
-        self.stored = 0
-        self._waiting: deque[Waiting] = deque()
-        self._lock = threading.Lock()
-
-    def add(self, companion: Companion, frame: ShownFrame) -> None:
-        """Add a pose that was sent just now."""
-        with self._lock:
-            self._waiting.append((companion, frame))
-            if len(self._waiting) > MAX_WAITING:
-                self._waiting.popleft()
-                self.lost += 1
-
-    def take(self) -> list[Waiting]:
-        """Return all waiting poses, which no longer wait."""
-        with self._lock:
-            taken, self._waiting = list(self._waiting), deque()
-        return taken
-
-    def give_back(self, frames: list[Waiting]) -> None:
-        """Let poses wait again that could not be stored."""
-        with self._lock:
-            self._waiting.extendleft(reversed(frames))
+ShownPose = tuple[Companion, ShownFrame]
+"""Whom a participant was shown, and in which pose."""
 
 
 def store_frames(
-    db: Session, session_id: str, frames: list[Waiting], *, now: datetime, now_s: float
+    db: Session, session_id: str, frames: list[ShownPose], *, now: datetime, now_s: float
 ) -> int:
     """Store poses as a chunk of each companion and sender; return how many there were.
 

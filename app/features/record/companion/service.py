@@ -17,8 +17,8 @@ from app.errors import NotFound
 from app.features.movement.live import DoorKey
 from app.features.movement.performers import PerformerName, Performers
 from app.features.record.companion.frames import ShownFrame
-from app.features.record.companion.recording import WaitingFrames, store_frames
-from app.features.record.lab_trackers import is_kept, recording_of
+from app.features.record.companion.recording import MAX_WAITING, ShownPose, store_frames
+from app.features.record.headset import Waiting, is_kept, recording_of
 from app.features.record.sessions import Companion, state_of
 from app.models import StudySession
 from app.platform.access import session_by_id
@@ -44,7 +44,7 @@ class Shown:
     wake: Wake | None = None
     is_seen: bool = False
     latencies_s: deque[float] = field(default_factory=lambda: deque(maxlen=_LATENCIES))
-    waiting: WaitingFrames = field(default_factory=WaitingFrames)
+    waiting: Waiting[ShownPose] = field(default_factory=lambda: Waiting(MAX_WAITING))
     was_recording: bool = False
 
     def news(self) -> None:
@@ -120,7 +120,7 @@ class Companions(Part):
 
     def sent(self, one: Shown, companion: Companion, frame: ShownFrame) -> None:
         """Keep a pose that was sent to the headset while it showed the companion."""
-        one.waiting.add(companion, frame)
+        one.waiting.add([(companion, frame)])
         one.latencies_s.append(frame.sent_s - frame.arrival_s)
 
     def _show(self, one: Shown, chosen: Companion | None) -> None:

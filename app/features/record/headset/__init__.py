@@ -9,6 +9,7 @@ from app.features.record.headset.goals import (
     newest_goals,
     state_of_feet,
 )
+from app.features.record.headset.kept_movement import Waiting, is_kept, recording_of
 from app.features.record.headset.poses import TOPICS, TOUCHES, Touch
 from app.features.record.headset.service import (
     headset_state,
@@ -24,14 +25,17 @@ __all__ = [
     "FurtherSocket",
     "SessionAvatar",
     "Touch",
+    "Waiting",
     "calibration_underway",
     "feet_tracked",
     "headset_state",
+    "is_kept",
     "is_recording",
     "newest_goals",
     "next_message",
     "next_of",
     "participant_info",
+    "recording_of",
     "serve_headset",
     "state_of_feet",
     "trial_avatar",

@@ -6,7 +6,7 @@ worlds lie.
 """
 
 from app.features.record.lab_trackers.link import FOOT_LIMIT_M
-from app.features.record.lab_trackers.recording import is_kept, next_number, recording_of
+from app.features.record.lab_trackers.recording import next_number
 from app.features.record.lab_trackers.samples import ENCODING, TrackerSamples, decode_samples
 from app.features.record.lab_trackers.service import LabTrackers
 
@@ -16,7 +16,5 @@ __all__ = [
     "LabTrackers",
     "TrackerSamples",
     "decode_samples",
-    "is_kept",
     "next_number",
-    "recording_of",
 ]

@@ -1,73 +1,21 @@
-"""Store what the trackers and the head of a session sent, and how the worlds lay.
+"""Store what the trackers and the head of a session sent, and how the worlds lay."""
 
-Samples wait in memory for about a second, and are kept until they are on disk.
-"""
-
-import threading
-from collections import deque
-from collections.abc import Iterable
 from dataclasses import asdict
 from datetime import datetime, timedelta
-from typing import Any, Literal
+from typing import Any
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.features.movement.live import Sample
-from app.features.record.headset import is_recording
 from app.features.record.lab_trackers.samples import ENCODING, encode_samples
-from app.features.record.sessions import ReportAlignment, apply_command, plan_of, state_of
+from app.features.record.sessions import ReportAlignment, apply_command, state_of
 from app.models import StudySession, TrackerAlignment, TrackerChunk, new_id
 from app.platform.context import AppContext
 from app.science.alignment import Alignment, Jump, Watched
 
 MAX_WAITING = 400_000
 """The most samples of a session that wait for the disk: minutes of the busiest source."""
-Recording = Literal["yes", "no", "refused"]
-
-
-class WaitingSamples:
-    """The samples of a session that are not on disk yet; safe from any thread."""
-
-    def __init__(self) -> None:
-        self.lost = 0
-        """Samples that were discarded because too many waited: the disk was full for minutes."""
-        self.stored = 0
-        self._waiting: deque[Sample] = deque()
-        self._lock = threading.Lock()
-
-    def add(self, samples: Iterable[Sample]) -> None:
-        """Add samples in the order in which they arrived."""
-        with self._lock:
-            self._waiting.extend(samples)
-            while len(self._waiting) > MAX_WAITING:
-                self._waiting.popleft()
-                self.lost += 1
-
-    def take(self) -> list[Sample]:
-        """Return all waiting samples, which no longer wait."""
-        with self._lock:
-            taken, self._waiting = list(self._waiting), deque()
-        return taken
-
-    def give_back(self, samples: list[Sample]) -> None:
-        """Let samples wait again that could not be stored."""
-        with self._lock:
-            self._waiting.extendleft(reversed(samples))
-
-
-def recording_of(db: Session, session: StudySession) -> Recording:
-    """Return whether movement of a session is recorded now, and whether that was refused."""
-    state = state_of(session)
-    if state.refused_consent is not None or state.erased:
-        return "refused"
-    step = None if state.current is None else plan_of(db, session)[state.current]
-    return "yes" if is_recording(state, step) else "no"
-
-
-def is_kept(recording: Recording, *, was_recording: bool) -> bool:
-    """Return whether what waits since the last look is kept: movement was recorded until now."""
-    return recording == "yes" or (recording == "no" and was_recording)
 
 
 def next_number(db: Session, session_id: str) -> int:

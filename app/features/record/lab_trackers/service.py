@@ -18,12 +18,11 @@ from sqlalchemy.orm import Session
 from app.errors import NotFound
 from app.features.movement.live import LiveTracking, Sample, limbs_of
 from app.features.movement.performers import Performers
+from app.features.record.headset import Waiting, is_kept, recording_of
 from app.features.record.lab_trackers.bones import bone_limbs
 from app.features.record.lab_trackers.link import TrackerLink
 from app.features.record.lab_trackers.recording import (
-    WaitingSamples,
-    is_kept,
-    recording_of,
+    MAX_WAITING,
     store_change,
     store_samples,
 )
@@ -48,7 +47,7 @@ class Followed:
 
     session_id: str
     link: TrackerLink
-    waiting: WaitingSamples = field(default_factory=WaitingSamples)
+    waiting: Waiting[Sample] = field(default_factory=lambda: Waiting(MAX_WAITING))
     changes: deque[Watched] = field(default_factory=deque)
     was_recording: bool = False
     is_watching: bool = False

@@ -12,7 +12,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound, NotNow, Withdrawn
-from app.features.record.lab_trackers import recording_of
+from app.features.record.headset import recording_of
 from app.features.record.sessions import require_capture_of
 from app.models import RoadChunk, RoadCrossing, RoadRun, StudySession
 from app.protocol import PARTICIPANT, StudyRoad

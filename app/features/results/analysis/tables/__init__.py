@@ -9,10 +9,6 @@ included with `valid` false. Texts are `object`, integers `Int64`, numbers `floa
 
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.clocks import run_clocks
-from app.features.results.analysis.tables.companions import (
-    companion_frames,
-    has_companion_frames,
-)
 from app.features.results.analysis.tables.context import KINDS, has_rules, of_kind
 from app.features.results.analysis.tables.equipment import (
     calibrations_table,
@@ -46,6 +42,8 @@ from app.features.results.analysis.tables.tasks import (
     contacts_table,
 )
 from app.features.results.analysis.tables.trackers import (
+    companion_frames,
+    has_companion_frames,
     has_tracker_samples,
     tracker_alignments_table,
     tracker_samples,

@@ -1,16 +1,20 @@
-"""The tables of the lab's trackers in sessions: how the worlds lay, and what was sent."""
+"""The tables of what a lab's doors brought to sessions: trackers, how they lay, and companions."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies import study_by_key
-from app.features.record.lab_trackers import ENCODING, decode_samples
-from app.features.results.analysis.codebook import columns_of
+from app.features.record.companion import ENCODING as OF_COMPANIONS
+from app.features.record.companion import decode_frames
+from app.features.record.lab_trackers import ENCODING as OF_TRACKERS
+from app.features.record.lab_trackers import decode_samples
+from app.features.results.analysis.codebook import COMPANION_POSE, columns_of
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import finished, of_kind, sessions_context
 from app.models import StudySession, TrackerAlignment, TrackerChunk
@@ -68,14 +72,14 @@ def _alignment(row: TrackerAlignment) -> dict[str, Any]:
     }
 
 
-def _sent(session_id: str) -> tuple[ColumnElement[bool], ...]:
-    return TrackerChunk.session_id == session_id, TrackerChunk.encoding == ENCODING
-
-
 def has_tracker_samples(db: Session, session_id: str) -> bool:
     """Return whether anything that trackers sent is stored of a session."""
-    query = select(TrackerChunk.number).where(*_sent(session_id)).limit(1)
-    return db.scalar(query) is not None
+    return _has(db, session_id, OF_TRACKERS)
+
+
+def has_companion_frames(db: Session, session_id: str) -> bool:
+    """Return whether the participant of a session was shown a companion."""
+    return _has(db, session_id, OF_COMPANIONS)
 
 
 def tracker_samples(
@@ -86,10 +90,8 @@ def tracker_samples(
     The columns are those of the codebook's table `trackers`. `simulated` and `avatar` are the
     session's, which every table repeats.
     """
-    query = select(TrackerChunk).where(*_sent(session_id)).order_by(TrackerChunk.number)
-    for row in db.scalars(query.execution_options(yield_per=16)):
+    for row in _chunks(db, session_id, OF_TRACKERS):
         found = decode_samples(row.trackers, row.sample_count, row.data)
-        late_ns = np.round((found.arrival_s - row.first_s) * _NS_PER_S).astype("int64")
         yield pd.DataFrame(
             {
                 "simulated": simulated,
@@ -100,10 +102,56 @@ def tracker_samples(
                 "tracked": found.tracked,
                 "source_s": found.source_s,
                 "arrival_s": found.arrival_s,
-                "arrived_at_utc": pd.Timestamp(row.first_at) + pd.to_timedelta(late_ns, unit="ns"),
+                "arrived_at_utc": _utc(row, found.arrival_s),
                 "mapped_s": found.mapped_s,
                 "mapped_uncertainty_s": found.uncertainty_s,
                 **{f"{axis}_m": found.positions_m[:, n] for n, axis in enumerate("xyz")},
                 **{f"q{axis}": found.rotations[:, n] for n, axis in enumerate("wxyz")},
             }
         )
+
+
+def companion_frames(
+    db: Session, session_id: str, *, simulated: bool, avatar: str
+) -> Iterator[pd.DataFrame]:
+    """Yield the poses of a session's companion as they were shown, in pieces of about a second.
+
+    The columns are those of the codebook's table `companions`. `simulated` and `avatar` are the
+    session's, which every table repeats.
+    """
+    for row in _chunks(db, session_id, OF_COMPANIONS):
+        found = decode_frames(row.sample_count, row.data)
+        yield pd.DataFrame(
+            {
+                "simulated": simulated,
+                "avatar": avatar,
+                "door": row.door,
+                "source": row.source,
+                "source_s": found.source_s,
+                "arrival_s": found.arrival_s,
+                "mapped_s": found.mapped_s,
+                "sent_s": found.sent_s,
+                "sent_at_utc": _utc(row, found.sent_s),
+                **dict(zip(COMPANION_POSE, found.values.T, strict=True)),
+            }
+        )
+
+
+def _of(session_id: str, encoding: str) -> tuple[ColumnElement[bool], ...]:
+    return TrackerChunk.session_id == session_id, TrackerChunk.encoding == encoding
+
+
+def _has(db: Session, session_id: str, encoding: str) -> bool:
+    query = select(TrackerChunk.number).where(*_of(session_id, encoding)).limit(1)
+    return db.scalar(query) is not None
+
+
+def _chunks(db: Session, session_id: str, encoding: str) -> Iterable[TrackerChunk]:
+    query = select(TrackerChunk).where(*_of(session_id, encoding)).order_by(TrackerChunk.number)
+    return db.scalars(query.execution_options(yield_per=16))
+
+
+def _utc(row: TrackerChunk, server_s: NDArray[np.float64]) -> pd.DatetimeIndex:
+    """Return times of a chunk by the server's monotonic clock as times of day."""
+    late_ns = np.round((server_s - row.first_s) * _NS_PER_S).astype("int64")
+    return pd.Timestamp(row.first_at) + pd.to_timedelta(late_ns, unit="ns")
