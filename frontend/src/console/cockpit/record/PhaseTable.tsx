@@ -15,15 +15,9 @@ import cockpit from "../Cockpit.module.css";
 import classes from "../Panels.module.css";
 import { AchievedLatency } from "./AchievedLatency";
 
-const COLUMNS = [
-  "phase",
-  "latency",
-  "achieved",
-  "active",
-  "completions",
-  "contacts",
-  "contactTime",
-] as const;
+const COLUMNS = ["phase", "latency", "achieved", "active", "completions"] as const;
+/** What only tasks at boxes have. */
+const AT_BOXES = ["contacts", "contactTime"] as const;
 
 /** The replay's address contains a question mark, which the router would interpret as its own. */
 const replayOf = (session: string, phase: number): string =>
@@ -33,6 +27,7 @@ export function PhaseTable({ session }: { readonly session: SessionView }): JSX.
   const { t } = useTexts();
   const tasks = session.phases.filter((phase) => phase.limb !== null || isCounted(phase));
   if (tasks.length === 0) return null;
+  const hasBoxes = tasks.some((phase) => !isCrossing(phase));
   return (
     <section className={classes.card}>
       <div className={classes.titleRow}>
@@ -53,7 +48,7 @@ export function PhaseTable({ session }: { readonly session: SessionView }): JSX.
         <table className={`${classes.table} numbers`}>
           <thead>
             <tr>
-              {COLUMNS.map((column) => (
+              {[...COLUMNS, ...(hasBoxes ? AT_BOXES : [])].map((column) => (
                 <th key={column} scope="col">
                   {t(`recorded.${column}`)}
                 </th>
@@ -65,7 +60,12 @@ export function PhaseTable({ session }: { readonly session: SessionView }): JSX.
           </thead>
           <tbody>
             {tasks.map((phase) => (
-              <PhaseRow key={phase.phase_id} session={session.id} phase={phase} />
+              <PhaseRow
+                key={phase.phase_id}
+                session={session.id}
+                phase={phase}
+                hasBoxes={hasBoxes}
+              />
             ))}
           </tbody>
         </table>
@@ -79,7 +79,11 @@ interface PhaseRowProps {
   readonly phase: PhaseSummary;
 }
 
-function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
+function PhaseRow({
+  session,
+  phase,
+  hasBoxes,
+}: PhaseRowProps & { readonly hasBoxes: boolean }): JSX.Element {
   const { t, language } = useTexts();
   const isRoad = isCrossing(phase);
   const voided = phase.status === "voided";
@@ -99,12 +103,16 @@ function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
       </td>
       <td>{number(phase.active_s, language, 1)} s</td>
       <td>{phase.completions ?? "–"}</td>
-      <td>{isRoad ? "–" : (phase.side_contacts ?? "–")}</td>
-      <td>
-        {isRoad || phase.side_contact_s === null
-          ? "–"
-          : `${number(phase.side_contact_s, language, 1)} s`}
-      </td>
+      {hasBoxes && (
+        <>
+          <td>{isRoad ? "–" : (phase.side_contacts ?? "–")}</td>
+          <td>
+            {isRoad || phase.side_contact_s === null
+              ? "–"
+              : `${number(phase.side_contact_s, language, 1)} s`}
+          </td>
+        </>
+      )}
       <td>
         <ReplayLink session={session} phase={phase} />
       </td>

@@ -28,10 +28,11 @@ export function guidance(session: SessionView): Key {
   if (session.status === "completed" && session.simulated) return "guide.completed.simulated";
   if (session.status !== "active" && session.status !== "planned") return `guide.${session.status}`;
   if (step === null || session.current === null) return "guide.planned";
-  if (session.current.status === "preparing" && isCrossing(step)) {
-    return "guide.preparing.road";
+  const { status } = session.current;
+  if (isCrossing(step) && (status === "preparing" || status === "running")) {
+    return `guide.${status}.road`;
   }
-  if (session.current.status !== "ready") return `guide.${session.current.status}`;
+  if (status !== "ready") return `guide.${status}`;
   return isForm(step) && step.forms === "headset" ? "step.askInHeadset" : stepText("guide", step);
 }
 

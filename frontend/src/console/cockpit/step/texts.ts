@@ -23,6 +23,7 @@ export const sessionEn = {
   "guide.preparing.road":
     "It begins once the participant stands on the start square and cars drive.",
   "guide.preparing": "The countdown is running in the headset.",
+  "guide.running.road": "The participant crosses the road. Somebody walks beside them.",
   "guide.running": "The task is running in the headset. Stay within reach.",
   "guide.paused": "The clock is paused. Resume when the participant is ready.",
   "guide.walk_back":
@@ -120,6 +121,7 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "guide.preparing.road":
     "Es beginnt, sobald die Person auf dem Startquadrat steht und Autos fahren.",
   "guide.preparing": "Im Headset läuft der Countdown.",
+  "guide.running.road": "Die Person überquert die Straße. Jemand geht neben ihr.",
   "guide.running": "Die Aufgabe läuft im Headset. Bleiben Sie in Reichweite.",
   "guide.paused": "Die Uhr ist angehalten. Setzen Sie fort, wenn die Person bereit ist.",
   "guide.walk_back":
