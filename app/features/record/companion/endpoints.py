@@ -70,7 +70,7 @@ def _companion(db: Session, session: StudySession, wish: CompanionWish) -> Compa
         reference_body(wish.stature)
     except AvatarError:
         raise InvalidInput(
-            "nobody is that tall",
+            f"nobody is {wish.stature} tall",
             value=wish.stature,
             valid=STATURES,
             remedy="Give the companion's height in centimetres, such as 175cm.",

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from sqlalchemy import select
 from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Subprotocol
 
 from app.features.record.companion import ENCODING, decode_frames
 from app.features.record.companion.placing import STRAYS_M
@@ -65,8 +66,8 @@ def performing(port: int) -> Iterator[None]:
 def companion_socket(site: Site, token: str) -> Iterator[ClientConnection]:
     """Open the socket over which a companion comes to a headset."""
     url = site.server.url.replace("http", "ws") + "/api/vr/companion"
-    offered = [SUBPROTOCOL, f"bearer.{token}"]
-    with connect(url, subprotocols=offered, compression=None) as socket:  # type: ignore[arg-type]
+    offered = [Subprotocol(SUBPROTOCOL), Subprotocol(f"bearer.{token}")]
+    with connect(url, subprotocols=offered, compression=None) as socket:
         yield socket
 
 

@@ -28,8 +28,8 @@ DONE = "a crossing of the road in a finished phase"
 class Measure:
     """One figure: a column of the table of crossings, its axis and its words.
 
-    `gone_too`: whether crossings count in which the participant turned back. `missing`: what no
-    participant has where there are crossings, but none has this measure.
+    `turned_back_too`: whether crossings count that ended at the kerb where they began. `missing`:
+    what no participant has where there are crossings, but none has this measure.
     """
 
     column: str
@@ -37,7 +37,7 @@ class Measure:
     axis: str
     unit: str
     words: str
-    gone_too: bool = False
+    turned_back_too: bool = False
     missing: str = DONE
 
 
@@ -82,7 +82,7 @@ MEASURES = (
         "per crossing",
         "Share of the crossings in which a car hit the participant; those that were broken off by "
         "turning back count, too.",
-        gone_too=True,
+        turned_back_too=True,
     ),
 )
 
@@ -94,7 +94,7 @@ def crossings_drawings(crossings: pd.DataFrame) -> Iterator[Drawing]:
     """
     on_road = crossings[crossings["steps_on_s"].notna()]
     for measure in MEASURES:
-        rows = on_road if measure.gone_too else on_road[on_road["is_across"].astype(bool)]
+        rows = on_road if measure.turned_back_too else on_road[on_road["is_across"].astype(bool)]
         yield _drawing(
             measure, rows.dropna(subset=[measure.column]), DONE if rows.empty else measure.missing
         )
@@ -109,7 +109,7 @@ def _drawing(measure: Measure, rows: pd.DataFrame, missing: str) -> Drawing:
     values = per_participant(numbers, measure.column)
     figure = latency_figure(values, axis=measure.axis, unit=measure.unit)
     # The interval of a share may reach below 0, the share cannot.
-    figure.update_yaxes(rangemode="nonnegative" if measure.gone_too else "tozero")
+    figure.update_yaxes(rangemode="nonnegative" if measure.turned_back_too else "tozero")
     caption = f"{words} {count_note(n)} {len(rows)} crossings."
     data = drawn_rows(values, measure.unit).drop(columns="limb")
     return drawn(key, measure.title, caption, n, figure, data)
