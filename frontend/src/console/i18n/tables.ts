@@ -5,6 +5,7 @@
 import { verdictsDe, verdictsEn } from "@shared/selfTest/texts";
 import { registryDe, registryEn } from "@shared/session/registries.generated";
 import { avatarChangesDe, avatarChangesEn } from "../avatarChanges/texts";
+import { avatarEditingDe, avatarEditingEn } from "../avatarEditor/editingTexts";
 import { avatarsDe, avatarsEn } from "../avatarEditor/texts";
 import { tryoutDe, tryoutEn } from "../avatarEditor/tryout/texts";
 import { tuningDe, tuningEn } from "../avatarEditor/tuning/texts";
@@ -55,6 +56,7 @@ import { en } from "./en";
 export const allEn = {
   ...en,
   ...avatarChangesEn,
+  ...avatarEditingEn,
   ...avatarsEn,
   ...peopleEn,
   ...joinEn,
@@ -105,6 +107,7 @@ export const allEn = {
 export const allDe: Readonly<Record<keyof typeof allEn, string>> = {
   ...de,
   ...avatarChangesDe,
+  ...avatarEditingDe,
   ...avatarsDe,
   ...peopleDe,
   ...joinDe,
