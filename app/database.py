@@ -125,6 +125,34 @@ def _total_changes(connection: Connection) -> int:
     return int(getattr(connection.connection.dbapi_connection, "total_changes", 0))
 
 
+class LogKeeper:
+    """Keeps SQLite's log open while the connections of a pool come and go.
+
+    With its last connection SQLite removes the log and the log's index. A full disk has no room for
+    new ones, so nobody could even read until there is room again.
+    """
+
+    def __init__(self, file: str) -> None:
+        self._file = file
+        self._mutex = threading.Lock()
+        self._kept: sqlite3.Connection | None = None
+
+    def keep(self, _connection: DBAPIConnection, _record: ConnectionPoolEntry) -> None:
+        """Open the log, unless it is open already."""
+        with self._mutex:
+            if self._kept is None:
+                self._kept = sqlite3.connect(self._file, check_same_thread=False)
+                # SQLite opens the log with the first statement that reads.
+                self._kept.execute("PRAGMA schema_version").fetchone()
+
+    def release(self, _engine: Engine) -> None:
+        """Close the log with the engine, so that SQLite can tidy up."""
+        with self._mutex:
+            if self._kept is not None:
+                self._kept.close()
+                self._kept = None
+
+
 class FairLock:
     """A lock that serves its waiters in the order in which they arrived.
 
@@ -486,6 +514,10 @@ def make_engine(url: str, *, pooled: bool = True) -> Engine:
     )
     event.listen(engine, "connect", prepare_connection)
     event.listen(engine, "begin", SqliteBegin())
+    if pooled and parsed.database:
+        keeper = LogKeeper(parsed.database)
+        event.listen(engine, "connect", keeper.keep)
+        event.listen(engine, "engine_disposed", keeper.release)
     return engine
 
 

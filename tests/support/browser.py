@@ -17,6 +17,7 @@ from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, s
 
 from tests.support.chromium_binary import axe_script, find_chromium
 from tests.support.node import NODE
+from tests.support.server import LiveServer
 from tests.support.unit_tests import needs
 
 ColorScheme = Literal["light", "dark"]
@@ -137,7 +138,8 @@ def watched_contexts(browser: Browser, watch: PageWatch) -> Iterator[ContextFact
             if context not in before:
                 context.close()
     unexpected = watch.unexpected()
-    assert not unexpected, "the pages reported errors:\n" + "\n".join(unexpected)
+    told = "\n".join([*unexpected, LiveServer.logs_of_running()])
+    assert not unexpected, f"the pages reported errors:\n{told}"
 
 
 def in_both_schemes(page: Page) -> Iterator[ColorScheme]:

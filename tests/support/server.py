@@ -12,10 +12,11 @@ import ssl
 import subprocess
 import sys
 import time
+import weakref
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import IO, Self
+from typing import IO, ClassVar, Self
 
 import httpx2
 
@@ -25,6 +26,7 @@ from tests.support.unit_tests import needs
 ADMIN_PASSWORD = "only-for-this-test-run"
 STARTS_WITHIN_S = 240.0
 STOPS_WITHIN_S = 60.0
+LOG_CHARACTERS = 4000
 # The server closes a connection that was idle for five seconds. If a busy machine lets a
 # client send just then, the request fails; so the client closes first.
 CONNECTIONS = httpx2.Limits(max_connections=100, max_keepalive_connections=20, keepalive_expiry=1.0)
@@ -43,6 +45,8 @@ class LiveServer:
     The port and the data stay the same over `kill()`, `stop()` and `start()`. `environment` adds
     `REEMBODY_*` variables (such as `REEMBODY_DATABASE_URL`); the caller's own are not passed on.
     """
+
+    _running: ClassVar["weakref.WeakSet[LiveServer]"] = weakref.WeakSet()
 
     def __init__(
         self,
@@ -78,6 +82,11 @@ class LiveServer:
         """Return everything the server wrote to standard output and error, over all its starts."""
         return self._log_file.read_text(errors="replace") if self._log_file.exists() else ""
 
+    @classmethod
+    def logs_of_running(cls) -> str:
+        """Return the ends of the logs of all servers that run, for the message of a failed test."""
+        return "\n".join(f"{one.url}:\n{one.log[-LOG_CHARACTERS:]}" for one in cls._running)
+
     def start(self) -> Self:
         """Start the server and wait until it responds; raise `RuntimeError` with its log if not."""
         if self._process is not None:
@@ -85,6 +94,7 @@ class LiveServer:
         needs("a server")
         self.data_dir.mkdir(parents=True, exist_ok=True)
         self._process = self._begin()
+        self._running.add(self)
         try:
             self._wait_until_it_answers(self._process)
         except BaseException:
@@ -155,7 +165,7 @@ class LiveServer:
                 if process.poll() is not None:
                     raise RuntimeError(
                         f"{' '.join(self._command)} ended with exit code {process.returncode}; "
-                        f"its log:\n{self.log[-4000:]}"
+                        f"its log:\n{self.log[-LOG_CHARACTERS:]}"
                     )
                 try:
                     if client.get("/api/health").is_success:
@@ -165,13 +175,14 @@ class LiveServer:
                 time.sleep(0.05)
         raise RuntimeError(
             f"{self.url}/api/health did not answer within {STARTS_WITHIN_S:g} s; "
-            f"its log:\n{self.log[-4000:]}"
+            f"its log:\n{self.log[-LOG_CHARACTERS:]}"
         )
 
     def _end(self, request: signal.Signals) -> None:
         process, self._process = self._process, None
         if process is None:
             return
+        self._running.discard(self)
         process.send_signal(request)
         try:
             process.wait(STOPS_WITHIN_S)

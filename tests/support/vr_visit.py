@@ -177,6 +177,12 @@ class Visit:
             self._operate(view)
             self._act(FRAMES_OF_A_PHASE if _is_running(view) else FRAMES_AT_ONCE)
 
+    def perform_slowly(self, until: Callable[[Json], bool]) -> Json:
+        """Draw one frame between looks until a view is as asked: the server hears with a delay."""
+        while not until(view := self.view()):
+            self._act(1)
+        return view
+
     def draw(self, frames: int) -> None:
         """Draw as many frames; the participant presses both grips to step into the figure."""
         while frames > 0:

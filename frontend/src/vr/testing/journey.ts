@@ -155,10 +155,10 @@ class Journey {
    */
   async act(frames: number): Promise<number> {
     const page = globalThis.reembody;
-    const version = page?.state.version;
+    const stage = stageOf(page);
     this.grip(page?.place === "stepping_in");
     let drawn = 0;
-    while (drawn < frames && page?.state.version === version) {
+    while (drawn < frames && stageOf(page) === stage) {
       await this.step(1);
       drawn++;
     }
@@ -235,6 +235,12 @@ class Journey {
     await nextTask();
     await (globalThis.reembodyTest ?? globalThis.reembody)?.idle();
   }
+}
+
+/** Where the session stands, and the phase by the page itself, of which the server hears later. */
+function stageOf(page: typeof globalThis.reembody): string {
+  const run = page?.run;
+  return [page?.state.version, run?.clockRuns, run?.isFrozen].join();
 }
 
 /** On the road the person goes to the start, and walks across without looking, there and back. */
