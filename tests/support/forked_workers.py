@@ -11,6 +11,7 @@ limits or the output of the process that requested it. `spawn` itself is covered
 start a Python of their own (tests/platform/test_workers.py, tests/lan, tests/architecture).
 """
 
+import errno
 import multiprocessing
 import os
 import select
@@ -18,7 +19,7 @@ import socket
 from collections.abc import Callable
 from functools import partial
 from importlib import import_module
-from multiprocessing import forkserver
+from multiprocessing import forkserver, reduction
 from typing import Any
 
 HEAVY = ("mujoco", "numba", "pandas", "plotly.graph_objects", "scipy.ndimage", "scipy.stats")
@@ -61,6 +62,18 @@ def leave_fork_server(listener: socket.socket, *foreign: int) -> None:
         if listener.fileno() in readable:
             for name in HEAVY:
                 import_module(name)
+        vars(reduction).update(recvfds=partial(_descriptors, reduction.recvfds))
         forkserver.main(listener.fileno(), ended, [])
     os.close(ended)
     listener.close()
+
+
+def _descriptors(receive: Any, connection: socket.socket, count: int) -> Any:
+    """Receive a request; one whose sender was killed meanwhile is passed over.
+
+    Otherwise it would end the fork server, and no later worker of the run could start.
+    """
+    try:
+        return receive(connection, count)
+    except (EOFError, OSError, RuntimeError) as error:
+        raise ConnectionAbortedError(errno.ECONNABORTED, "the request was not sent") from error
