@@ -67,6 +67,10 @@ class LiveTracking(Part):
                 listener.stop()
             self._listeners.clear()
 
+    def is_open(self, door: str) -> bool:
+        """Return whether a door is open, or tries to be."""
+        return door in self._listeners
+
     def follow(self, door: DoorKey) -> None:
         """Open or close a door, or open it anew, as its stored settings say.
 

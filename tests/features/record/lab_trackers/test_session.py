@@ -136,6 +136,10 @@ def test_trackers_reach_the_headset_and_are_on_the_record(site: Site) -> None:
     shown = ok(site.operator.put(path, json={"door": "json", "source": "lab"}))
     assert (shown["source"], shown["status"]) == ("lab", "silent")
     assert check_of(site, session_id)["code"] == "lab_trackers.silent"
+    door = {"is_open": False, "interface": HERE, "port": port}
+    ok(site.operator.put("/api/trackers/doors/json", json=door))
+    assert check_of(site, session_id)["code"] == "lab_trackers.door_closed"
+    ok(site.operator.put("/api/trackers/doors/json", json=door | {"is_open": True}))
     token, room = site.token(session_id), SimulatedRoom(port)
     with (
         site.headset(token) as headset,

@@ -2,6 +2,7 @@
 
 from itertools import chain
 
+from app.features.movement.live import LiveTracking
 from app.features.record.lab_trackers import FOOT_LIMIT_M, LabTrackers
 from app.features.record.preflight.check import Finding, Found, Situation, StateCheck
 from app.texts import Words
@@ -19,6 +20,9 @@ def _lab_trackers(situation: Situation) -> Found:
     if doubled := link.doubled(now_s):
         return Found("two_on_limb", details=tuple(sorted(chain(*doubled.values()))))
     status = link.status(now_s)
+    doors = situation.context.part(LiveTracking)
+    if status in ("no_reference", "silent") and not doors.is_open(link.door):
+        return Found("door_closed", details=name)
     step = link.step()
     if status != "aligned" or step is None or step.watched.alignment is None:
         return Found(status, details=name)
@@ -64,6 +68,18 @@ LAB_TRACKERS = StateCheck(
             remedy=Words(
                 en="Give each its own limb, or none, on the page Trackers.",
                 de="Geben Sie auf der Seite Tracker jedem seinen eigenen Körperteil oder keinen.",
+            ),
+        ),
+        Finding(
+            "door_closed",
+            "fail",
+            Words(
+                en="The door of the trackers is closed",
+                de="Die Tür der Tracker ist geschlossen",
+            ),
+            remedy=Words(
+                en="Open it on the page Trackers.",
+                de="Öffnen Sie sie auf der Seite Tracker.",
             ),
         ),
         Finding(

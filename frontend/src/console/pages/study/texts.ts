@@ -66,9 +66,9 @@ const exportsEn = {
   "export.file.companions": "companions/*.csv",
   "export.about.companions":
     "With movement, the poses in which the participant was shown another person, if any.",
-  "export.file.samples": "samples/*.csv",
+  "export.file.samples": "samples/*.csv, fingers/*.csv",
   "export.about.samples":
-    "One file per session: target and actual pose of every frame, side by side.",
+    "One file per session: target and actual pose of every frame, side by side; those of the fingers apart, if any.",
   "export.file.receipts": "receipts/*.json",
   "export.about.receipts":
     "One per session: how many frames were produced, are stored and are missing, with proof.",
@@ -78,8 +78,8 @@ const exportsEn = {
   "export.file.imported": "imported/*.csv",
   "export.about.imported":
     "Answers collected elsewhere, one file per import; they are in no other table.",
-  "export.file.calibrations": "calibrations.csv",
-  "export.about.calibrations": "Latency of the lab’s own equipment, where it was measured.",
+  "export.file.calibrations": "calibrations.csv, headset_tests.csv",
+  "export.about.calibrations": "Latency of the lab’s own equipment, and the self-tests of its headsets.",
   "export.file.codebook": "codebook.csv",
   "export.about.codebook": "Every column: meaning, unit, valid values.",
 };
@@ -151,9 +151,9 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.file.companions": "companions/*.csv",
   "export.about.companions":
     "Mit Bewegung die Haltungen, in denen die Person eine andere gezeigt bekam.",
-  "export.file.samples": "samples/*.csv",
+  "export.file.samples": "samples/*.csv, fingers/*.csv",
   "export.about.samples":
-    "Eine Datei je Sitzung: Ziel- und Ist-Haltung jedes Bildes nebeneinander.",
+    "Eine Datei je Sitzung: Ziel- und Ist-Haltung jedes Bildes nebeneinander; die der Finger für sich, falls es sie gibt.",
   "export.file.receipts": "receipts/*.json",
   "export.about.receipts":
     "Einer je Sitzung: wie viele Bilder entstanden, gespeichert sind und fehlen, mit Nachweis.",
@@ -163,8 +163,8 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.file.imported": "imported/*.csv",
   "export.about.imported":
     "Anderswo erhobene Antworten, eine Datei je Import; sie stehen in keiner anderen Tabelle.",
-  "export.file.calibrations": "calibrations.csv",
-  "export.about.calibrations": "Latenz der eigenen Geräte, soweit sie gemessen wurde.",
+  "export.file.calibrations": "calibrations.csv, headset_tests.csv",
+  "export.about.calibrations": "Latenz der eigenen Geräte und die Selbsttests der Headsets.",
   "export.file.codebook": "codebook.csv",
   "export.about.codebook": "Jede Spalte: Bedeutung, Einheit, gültige Werte.",
 };
