@@ -4,7 +4,6 @@
  * Brotli makes scripts about a tenth smaller than gzip does. `NAME.br` is written beside each file
  * for which it is worth it; app/api/pages.py sends it to browsers that take it.
  */
-import { readdirSync } from "node:fs";
 import { readFile, writeFile } from "node:fs/promises";
 import { extname, resolve } from "node:path";
 import { promisify } from "node:util";
@@ -24,11 +23,9 @@ export function brotli(): Plugin {
     name: "brotli",
     apply: "build",
     enforce: "post",
-    async writeBundle({ dir = "" }) {
-      const files = readdirSync(dir, { recursive: true, encoding: "utf8" });
-      await Promise.all(
-        files.filter((one) => KINDS.has(extname(one))).map((one) => compress(resolve(dir, one))),
-      );
+    async writeBundle({ dir = "" }, bundle) {
+      const files = Object.keys(bundle).filter((one) => KINDS.has(extname(one)));
+      await Promise.all(files.map((one) => compress(resolve(dir, one))));
     },
   };
 }

@@ -12,6 +12,7 @@ import { resolve } from "node:path";
 import type { Plugin } from "vitest/config";
 
 export const WORKER = "tablet-worker";
+export const TABLET_MANIFEST = ".vite/tablet.json";
 const PAGE = "tablet/index.html";
 
 interface Part {
@@ -35,7 +36,7 @@ export function tabletWorker(): Plugin {
       if (/\bimport\b|\bexport\b/.test(code)) {
         this.error("The tablet's service worker must be one script without imports and exports.");
       }
-      const files = filesOf(JSON.parse(read(".vite/manifest.json")) as Manifest, PAGE);
+      const files = filesOf(JSON.parse(read(TABLET_MANIFEST)) as Manifest, PAGE);
       const version = createHash("sha256")
         .update([code, read(PAGE), ...files].join("\n"))
         .digest("hex")

@@ -5,17 +5,27 @@ import react from "@vitejs/plugin-react";
 import { defineConfig, type Plugin, type ProxyOptions } from "vite";
 import { brotli } from "./brotli.ts";
 import { helpPages } from "./helpPages.ts";
-import { tabletWorker, WORKER } from "./tabletWorker.ts";
 import { textTables } from "./textTables.ts";
 
-const source = resolve(import.meta.dirname, "src");
+export const source = resolve(import.meta.dirname, "src");
 /** The help pages are made from Markdown and pictures outside of `frontend`. */
 const repository = resolve(import.meta.dirname, "..");
 
-const alias = { "@shared": resolve(source, "shared"), "@charts": resolve(source, "charts") };
+export const alias = { "@shared": resolve(source, "shared"), "@charts": resolve(source, "charts") };
+
+/** The tablet's page, which is built by itself: see vite.tablet.config.ts. */
+export const TABLET = "tablet";
 
 /** Every folder of `src` with an index.html is a page of its own: console, tablet, ... */
 const pages = readdirSync(source).filter((name) => existsSync(resolve(source, name, "index.html")));
+
+export const output = {
+  outDir: resolve(import.meta.dirname, "../app/static"),
+  // The content security policy allows scripts from 'self' only: nothing may be inlined.
+  assetsInlineLimit: 0,
+  modulePreload: { polyfill: false },
+  chunkSizeWarningLimit: 1500,
+} as const;
 
 /** Workers that run WebAssembly: the server gives their folder a policy that allows it. */
 const WASM = new Set([
@@ -70,27 +80,20 @@ export default defineConfig({
     react(),
     servePagesLikeTheServer(),
     helpPages(repository),
-    tabletWorker(),
     textTables(source, alias),
     brotli(),
   ],
   resolve: { alias },
   build: {
-    outDir: resolve(import.meta.dirname, "../app/static"),
+    ...output,
     emptyOutDir: true,
-    manifest: true,
-    // The content security policy allows scripts from 'self' only: nothing may be inlined.
-    assetsInlineLimit: 0,
-    modulePreload: { polyfill: false },
-    chunkSizeWarningLimit: 1500,
     rolldownOptions: {
       input: {
-        ...Object.fromEntries(pages.map((name) => [name, resolve(source, name, "index.html")])),
-        [WORKER]: resolve(source, "tablet/offline/worker.ts"),
-      },
-      output: {
-        // The browser identifies a service worker by its URL, so its name must not change.
-        entryFileNames: ({ name }) => (name === WORKER ? "[name].js" : "assets/[name]-[hash].js"),
+        ...Object.fromEntries(
+          pages
+            .filter((name) => name !== TABLET)
+            .map((name) => [name, resolve(source, name, "index.html")]),
+        ),
       },
     },
   },

@@ -1,3 +1,4 @@
+import "@shared/theme/mantine.css";
 import { mountPage } from "@shared/ui/Page";
 import { Console } from "./Console";
 import { loaded, translations } from "./i18n";

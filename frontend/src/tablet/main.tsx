@@ -1,3 +1,4 @@
+import "./mantine.css";
 import "./tablet.css";
 import { mountPage } from "@shared/ui/Page";
 import { translations } from "./i18n";

@@ -1,4 +1,6 @@
-/** What every page starts with: theme, data cache, notifications. */
+/**
+ * What every page starts with: theme, data cache, notifications. The page imports its styles first.
+ */
 import { MantineProvider } from "@mantine/core";
 import { Notifications } from "@mantine/notifications";
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
@@ -10,8 +12,6 @@ import { ApiError } from "../api/request";
 import { theme } from "../theme/theme";
 import { Boundary, UnloadedBar } from "./Boundary";
 import { followImports } from "./unloaded";
-import "@mantine/core/styles.css";
-import "@mantine/notifications/styles.css";
 import "../theme/tokens.css";
 import "../theme/narrow.css";
 

@@ -79,7 +79,8 @@ const exportsEn = {
   "export.about.imported":
     "Answers collected elsewhere, one file per import; they are in no other table.",
   "export.file.calibrations": "calibrations.csv, headset_tests.csv",
-  "export.about.calibrations": "Latency of the lab’s own equipment, and the self-tests of its headsets.",
+  "export.about.calibrations":
+    "Latency of the lab’s own equipment, and the self-tests of its headsets.",
   "export.file.codebook": "codebook.csv",
   "export.about.codebook": "Every column: meaning, unit, valid values.",
 };

@@ -2,6 +2,7 @@
  * A page for tests and benchmarks in a browser: the try-out of the shipped configuration, of which
  * `tryoutPage.change` changes one axis without saving it. The server ships no such page.
  */
+import "@shared/theme/mantine.css";
 import { mountPage } from "@shared/ui/Page";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useState } from "react";
