@@ -11,7 +11,7 @@ from app import __version__
 from app.api.errors import install_error_handler
 from app.api.guards import Guards
 from app.api.pages import install_pages
-from app.api.router import add_routes
+from app.api.router import FIRST_ANSWERS, add_routes
 from app.clock import Clock
 from app.database import open_database
 from app.features.care.opening import bring_up_to_date
@@ -150,7 +150,7 @@ def create_app(
     install_error_handler(app)
     # Pages first: they are few, and need not wait for the routes of the interface, which are built
     # when a request is first compared with them.
-    install_pages(app, static_dir())
+    install_pages(app, static_dir(), FIRST_ANSWERS)
     add_routes(app)
     app.add_middleware(
         Guards,

@@ -5,18 +5,23 @@ Tablets and headsets fetch them over the lab's wireless network, where a megabyt
 
 import asyncio
 import gzip
+import logging
+import re
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, FastAPI, Request
 from fastapi.responses import FileResponse, HTMLResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.datastructures import Headers
 from starlette.types import Scope
 
+log = logging.getLogger(__name__)
+FirstAnswer = Callable[[Request], str | None]
+"""Returns, as JSON, the answer to the first request that a page would send; None to let it ask."""
 # Pictures and fonts are already compressed, and a small file gains nothing.
 _WORTH_IT = (
     "text/javascript",
@@ -42,6 +47,9 @@ WORKERS_THAT_EVALUATE = ("wasm/textureWorker-", "wasm/bodiesWorker-", "wasm/tryo
 # such a page loads comes from this server, and its workers must be sent with the same policy.
 ISOLATED = {"/vr"}
 ISOLATION: Mapping[str, str] = MappingProxyType({"cross-origin-embedder-policy": "require-corp"})
+FIRST_ANSWER = "first-answer"
+# A page that has the answer already needs no request for it.
+_PRELOADED = re.compile(r"<link[^>]* rel=\"preload\" as=\"fetch\"[^>]*>")
 _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reembody</title>
 <h1>The pages are not built yet</h1><p>The interface under /api works. Start the server with
 <code>./run</code>, which builds the pages.</p></html>"""
@@ -121,12 +129,20 @@ def _compressed(path: str) -> bytes:
     return gzip.compress(Path(path).read_bytes(), _LEVEL, mtime=0)
 
 
-def install_pages(app: FastAPI, static: Path) -> None:
-    """Serve each page at its address, and the assets under their hashed names."""
+def install_pages(
+    app: FastAPI, static: Path, first_answers: Mapping[str, FirstAnswer] = MappingProxyType({})
+) -> None:
+    """Serve each page at its address, and the assets under their hashed names.
+
+    `first_answers`: by the address of a page, what is written into it, which saves it a request
+    before it can show anything.
+    """
     router = APIRouter(include_in_schema=False)
     for address, file in PAGES.items():
         more = ISOLATION if address in ISOLATED else {}
-        router.add_api_route(address, _page(static / file, more), methods=["GET"])
+        first = first_answers.get(address)
+        page = _page(static / file, more) if first is None else _page_with(static / file, first)
+        router.add_api_route(address, page, methods=["GET"])
     worker = _worker(static / TABLET_WORKER[1:])
     router.add_api_route(TABLET_WORKER, worker, methods=["GET"])
     app.include_router(router)
@@ -139,6 +155,29 @@ def _page(file: Path, more_headers: Mapping[str, str]) -> Callable[[], Response]
         if not file.is_file():
             return HTMLResponse(_NOT_BUILT, status_code=503)
         return FileResponse(file, headers={"cache-control": "no-cache", **more_headers})
+
+    return serve
+
+
+def _page_with(file: Path, first: FirstAnswer) -> Callable[[Request], Response]:
+    plain = _page(file, {})
+
+    def serve(request: Request) -> Response:
+        try:
+            answer = first(request)
+        except Exception:
+            # The page opens without it, asks for itself, and shows what was wrong.
+            log.exception("the first answer could not be written into %s", file.parent.name)
+            answer = None
+        if answer is None or not file.is_file():
+            return plain()
+        # As text of JSON, so that nothing in it can end the element.
+        data = answer.replace("<", "\\u003c")
+        element = f'<script type="application/json" id="{FIRST_ANSWER}">{data}</script>'
+        html = _PRELOADED.sub("", file.read_text(encoding="utf-8"))
+        html = html.replace("</head>", f"{element}</head>", 1)
+        # It is a participant's: no cache may keep it.
+        return HTMLResponse(html, headers={"cache-control": "no-store"})
 
     return serve
 

@@ -47,6 +47,7 @@ from app.features.record.self_tests.endpoints import router as self_tests
 from app.features.record.suggestions.endpoints import router as suggestions
 from app.features.record.tablet.endpoints import calls
 from app.features.record.tablet.endpoints import direct as direct_to_tablets
+from app.features.record.tablet.endpoints import first_answer as first_answer_to_tablet
 from app.features.record.tablet.endpoints import router as tablet
 from app.features.record.tryout.endpoints import router as tryout
 from app.features.results.analysis.endpoints import router as analysis
@@ -107,6 +108,10 @@ REFUSALS: dict[int | str, dict[str, Any]] = {
 
 Naming the model here would build two validators for each of the routes at every start.
 """
+
+
+FIRST_ANSWERS = {"/tablet": first_answer_to_tablet}
+"""What the server writes into a page, by the page's address."""
 
 
 def add_routes(app: FastAPI) -> None:

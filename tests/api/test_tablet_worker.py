@@ -1,4 +1,4 @@
-"""Tests of how the tablet's service worker is served."""
+"""Tests of how the tablet's page and its service worker are served."""
 
 from pathlib import Path
 
@@ -21,3 +21,19 @@ def test_the_service_worker_is_served_without_caching(tmp_path: Path, *, built: 
     if built:
         assert answer.headers["content-type"].split(";")[0] == "text/javascript"
         assert answer.headers["cache-control"] == "no-cache"
+
+
+def test_a_page_opens_without_an_answer_that_fails(tmp_path: Path) -> None:
+    """What is written into a page cannot end its element; if it fails, the page comes without."""
+    (tmp_path / "tablet").mkdir()
+    html = "<html><head><title>x</title></head><body></body></html>"
+    (tmp_path / "tablet/index.html").write_text(html)
+    answers = iter(['{"state": "</script><b>"}'])
+    app = FastAPI()
+    install_pages(app, tmp_path, {"/tablet": lambda _: next(answers)})
+    client = TestClient(app)
+    element = '<script type="application/json" id="first-answer">'
+    written = client.get("/tablet").text
+    assert written.count("</script>") == 1
+    assert f'{element}{{"state": "\\u003c/script>\\u003cb>"}}</script></head>' in written
+    assert client.get("/tablet").text == html

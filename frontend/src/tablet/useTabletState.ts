@@ -21,6 +21,7 @@ export function useTabletState() {
   const query = useQuery({
     queryKey: STATE_KEY,
     queryFn: () => stateIfPaired(queries),
+    initialData: stateInPage,
     // Send the request even if the system reports no network: its failure brings up the stored
     // screen.
     networkMode: "always",
@@ -50,6 +51,13 @@ export function useTabletState() {
     });
   }, [paired, queries, show]);
   return { query, show, connected: paired && feed !== "lost" };
+}
+
+/** The screen that the server has written into the page, which a paired tablet shows at once. */
+function stateInPage(): TabletState | undefined {
+  const text = document.getElementById("first-answer")?.textContent;
+  if (!text) return undefined;
+  return (JSON.parse(text) as { readonly state: TabletState | null }).state ?? undefined;
 }
 
 /**

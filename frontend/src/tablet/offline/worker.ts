@@ -51,7 +51,8 @@ async function install(): Promise<void> {
 
 async function cacheAll(cache: Cache): Promise<void> {
   await cache.addAll(build.files);
-  const fetched = await fetch(build.page, { cache: "no-cache" });
+  // Without the cookie, so that no participant's screen is in the page that is kept.
+  const fetched = await fetch(build.page, { cache: "no-cache", credentials: "omit" });
   // The server may have a newer build by now; its page needs that build's worker.
   const script = build.files[0] ?? "";
   if (!fetched.ok || !(await fetched.clone().text()).includes(script)) {

@@ -1,6 +1,7 @@
 """Tests of what a tablet shows and does: its session's current step, and never the condition."""
 
 import json
+import re
 from typing import Any
 
 import pytest
@@ -125,3 +126,28 @@ def test_an_unpaired_tablet_can_query_its_pairing(lab: Lab) -> None:
     (device,) = lab.view(view["id"])["devices"]
     lab.operator.delete(f"/api/sessions/{view['id']}/devices/{device['id']}")
     assert ok(tablet.get("/api/tablet/paired")) == {"state": None}
+
+
+@pytest.mark.one_engine
+def test_the_page_brings_its_first_screen(lab: Lab) -> None:
+    """A paired tablet's page contains its screen and is kept nowhere; a stranger's has none."""
+    view = lab.join()
+    plain = lab.stranger().get("/tablet")
+    assert plain.headers["cache-control"] == "no-cache"
+    assert _in_page(plain) is None
+    tablet = lab.tablet(view["id"])
+    page = tablet.get("/tablet")
+    assert page.headers["cache-control"] == "no-store"
+    assert _in_page(page) == {"state": state(tablet)}
+    assert 'rel="preload"' not in page.text
+    (device,) = lab.view(view["id"])["devices"]
+    lab.operator.delete(f"/api/sessions/{view['id']}/devices/{device['id']}")
+    assert _in_page(tablet.get("/tablet")) == {"state": None}
+
+
+def _in_page(page: Any) -> Json | None:
+    """Return what the server has written into a page, as the page reads it."""
+    found = re.search(
+        r'<script type="application/json" id="first-answer">([^<]*)</script>', page.text
+    )
+    return None if found is None else json.loads(found[1])
