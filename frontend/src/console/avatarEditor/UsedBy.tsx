@@ -72,9 +72,10 @@ interface FrozenProps {
 }
 
 /** The same for a version with all its studies; nothing while no session has used it. */
-export function Frozen({ version: { key, number } }: FrozenProps): JSX.Element | null {
-  const { data } = useQuery(usageQuery(key, number));
-  if (data === undefined || data.sessions === 0) return null;
+export function Frozen({ version }: FrozenProps): JSX.Element | null {
+  // The version says who used it when it was loaded, so the mark is there from the start.
+  const { data = version } = useQuery(usageQuery(version.key, version.number));
+  if (data.sessions === 0) return null;
   const running = data.used_by.reduce((sum, use) => sum + use.running_sessions, 0);
   return <FrozenMark running={running} />;
 }

@@ -444,6 +444,23 @@ export const registryDe: Readonly<Record<keyof typeof registryEn, string>> = {
   "validity.phase.road_crossing": "Überqueren der Straße",
 };
 
+export const CHECKS = [
+  "tablet",
+  "headset",
+  "frame_rate",
+  "clock",
+  "trackers",
+  "lab_trackers",
+  "feet",
+  "storage",
+  "disk",
+  "latency",
+  "road",
+  "instruments",
+  "configuration",
+  "language",
+] as const;
+
 export const CHECKS_MENDED_IN_SECONDS = [
   "tablet",
   "headset",

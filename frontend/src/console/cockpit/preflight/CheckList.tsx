@@ -2,6 +2,7 @@
 import { Button } from "@mantine/core";
 import type { Check } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
+import { CHECKS } from "@shared/session/registries.generated";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
@@ -26,6 +27,24 @@ export function CheckList({ checks, onOverride }: CheckListProps): JSX.Element {
     <ul className={classes.list}>
       {checks.map((check) => (
         <Row key={check.key} check={check} onOverride={onOverride} />
+      ))}
+    </ul>
+  );
+}
+
+/** Every check while the list runs, so that nothing below moves once it says what it found. */
+export function RunningChecks(): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <ul className={classes.list} aria-busy="true">
+      {CHECKS.map((key) => (
+        <li key={key} className={`${classes.row} ${classes.wait}`}>
+          <span className={classes.mark}>
+            <Icon name="clock" size={18} />
+          </span>
+          <span className={classes.name}>{t(`preflight.check.${key}`)}</span>
+          <span className={classes.found}>…</span>
+        </li>
       ))}
     </ul>
   );

@@ -1,12 +1,12 @@
 /** The list of checks in the cockpit: in the middle before the start, afterwards in a drawer. */
-import { Button, Loader } from "@mantine/core";
+import { Button } from "@mantine/core";
 import type { Check, SessionView } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { CheckList } from "./CheckList";
+import { CheckList, RunningChecks } from "./CheckList";
 import { failing } from "./checkTexts";
 import { OverrideDialog } from "./OverrideDialog";
 import classes from "./Preflight.module.css";
@@ -53,9 +53,12 @@ export function PreflightBody({ session, flight, title }: PreflightBodyProps): J
         </Button>
       </div>
       {data === undefined && error === null && (
-        <div className={classes.loading}>
-          <Loader size="sm" type="dots" role="status" aria-label={t("preflight.loading")} />
-        </div>
+        <>
+          <p className={classes.summary} role="status">
+            {t("preflight.loading")}
+          </p>
+          <RunningChecks />
+        </>
       )}
       {error !== null && <Failure error={error} onRetry={() => void refetch()} />}
       {data !== undefined && (
