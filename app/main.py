@@ -33,7 +33,7 @@ from app.features.record.lab_trackers import LabTrackers
 from app.features.record.road import Roads
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
 from app.features.record.tryout import TryoutRunner
-from app.features.results.analysis import Drawings
+from app.features.results.analysis import Drawings, FigurePreparation
 from app.features.results.exports import ExportQueue
 from app.features.results.replay import ReplayQueue
 from app.lan import Network
@@ -56,6 +56,7 @@ PARTS: tuple[PartMaker, ...] = (
     TelemetryWriter.of,
     Folder.of,
     Drawings.of,
+    FigurePreparation.of,
     ReplayQueue.of,
     lambda context: CaptureQueue().watched_by(context.background, "captures"),
     lambda context: PredictionQueue().watched_by(context.background, "walking"),

@@ -23,6 +23,7 @@ from app.features.movement.files import streamed
 from app.features.people.audit import download_place, record, record_copy
 from app.features.record.erasure import mark_erasure, overwrite
 from app.features.record.questionnaires import StoredAnswers, stored_answers
+from app.features.results.analysis import Drawings
 from app.features.results.exports import ExportQueue
 from app.models import Study, StudySession
 from app.platform.access import revealed_sessions, session_by_id
@@ -62,8 +63,9 @@ async def post_erasure(
             )
 
         await run_in_threadpool(in_transaction)
-    # Exported files that were not downloaded yet may contain what was erased.
+    # Exported files that were not downloaded yet, and figures, may contain what was erased.
     await run_in_threadpool(context.part(ExportQueue).forget_study, key)
+    await run_in_threadpool(context.part(Drawings).forget, key)
     return await run_in_threadpool(_finished, context, participant_id)
 
 

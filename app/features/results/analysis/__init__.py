@@ -6,6 +6,7 @@ processes (`Drawings`). Code that needs pandas imports the subpackages `tables`,
 """
 
 from app.features.results.analysis.drawing import Drawings
+from app.features.results.analysis.preparation import FigurePreparation
 from app.features.results.analysis.schemas import DashboardKind, Kind
 
-__all__ = ["DashboardKind", "Drawings", "Kind"]
+__all__ = ["DashboardKind", "Drawings", "FigurePreparation", "Kind"]

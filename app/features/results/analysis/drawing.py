@@ -4,15 +4,18 @@ Drawing a thousand participants takes many seconds of computing. In a thread of 
 delay every running session, so a worker process does it, which ends with the server. A page
 immediately receives the last figures drawn, with their time and whether they are up to date. The
 study's tests are computed and cached in the same way.
+
+Results are only in memory: they contain participants' values, so a file of them would have to be
+erased, restored and left out of backups with their data. A server that starts draws them again.
 """
 
 import logging
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError, Future
 from concurrent.futures import TimeoutError as NotYet
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Literal, Self
 
@@ -35,6 +38,10 @@ REFRESH_WITHIN_S = 0.05
 """How long a page waits for newer figures before it gets the older ones."""
 MAX_CACHED_BYTES = 64_000_000
 ResultKind = Literal["dashboard", "statistics"]
+GROUPS: tuple[FigureGroup, ...] = (
+    *("embodiment", "answers", "tasks", "movement", "demographics", "quality", "progress"),
+)
+"""The groups of figures, in the order in which a dashboard of all figures has them."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +79,7 @@ class Drawings(Part):
     _in_progress: dict[DrawingRequest, "Future[None]"] = field(default_factory=dict)
     _worker: Worker = field(default_factory=Worker)
     _tester: Worker = field(default_factory=Worker)
+    _forgotten: int = 0
     _lock: threading.RLock = field(default_factory=threading.RLock)
 
     @classmethod
@@ -121,14 +129,58 @@ class Drawings(Part):
         except Exception as error:
             raise _failed(type(error).__name__) from error
 
-    def _newest(self, db: Session, request: DrawingRequest) -> tuple[Drawn, bool]:
+    def prepare(self, db: Session, request: DrawingRequest) -> "Future[None] | None":
+        """Start to make a result for whoever will ask for it.
+
+        Returns the future of the work, or None if the result of the current data is cached.
+        """
         state = state_of_data(db, request.study_key, request.kind)
         with self._lock:
             drawn = self._cache.get(request)
-            if drawn is not None:
+            if drawn is not None and drawn.state == state:
+                return None
+            return self._in_progress.get(request) or self._start(request, state)
+
+    def end_tester(self) -> None:
+        """End the process for tests if it is idle: its tables are of no use to a later test."""
+        with self._lock:
+            if not any(one.result_kind == "statistics" for one in self._in_progress):
+                self._tester.end()
+
+    def forget(self, study_key: str) -> None:
+        """Delete everything made from a study's data, some of which have just been erased.
+
+        The worker processes end, because their memory contains the study's tables. Requests that
+        wait for them start anew.
+        """
+        with self._lock:
+            self._forgotten += 1
+            for request in [one for one in self._cache if one.study_key == study_key]:
+                del self._cache[request]
+            self._in_progress.clear()
+        self._worker.end()
+        self._tester.end()
+
+    def _joined(self, request: DrawingRequest, state: State) -> Drawn | None:
+        """Return all figures, joined from their groups if those are cached and current."""
+        if request.result_kind != "dashboard" or request.group is not None:
+            return None
+        found = [self._cache.get(replace(request, group=group)) for group in GROUPS]
+        groups = [one for one in found if one is not None and one.state == state]
+        if len(groups) < len(GROUPS):
+            return None
+        body = join_figures([one.body for one in groups])
+        return Drawn(body, state, min(one.at for one in groups))
+
+    def _newest(self, db: Session, request: DrawingRequest) -> tuple[Drawn, bool]:
+        state = state_of_data(db, request.study_key, request.kind)
+        with self._lock:
+            forgotten = self._forgotten
+            drawn = self._joined(request, state) or self._cache.get(request)
+            if request in self._cache:
                 self._cache.move_to_end(request)
-                if drawn.state == state:
-                    return drawn, True
+            if drawn is not None and drawn.state == state:
+                return drawn, True
             drawing = self._in_progress.get(request) or self._start(request, state)
         try:
             drawing.result(FIRST_WITHIN_S if drawn is None else REFRESH_WITHIN_S)
@@ -136,6 +188,8 @@ class Drawings(Part):
             if drawn is None:
                 raise _failed("it took too long") from None
         except Exception as error:
+            if self._forgotten != forgotten:
+                return self._newest(db, request)
             raise _failed(type(error).__name__) from error
         with self._lock:
             newest = self._cache.get(request) or drawn
@@ -149,15 +203,27 @@ class Drawings(Part):
         # Not the worker's future: whoever waits for that one resumes before the result is cached.
         stored: Future[None] = Future()
         self._in_progress[request] = stored
-        drawing.add_done_callback(lambda done: self._store_result(request, state, done, stored))
+        begun = self._forgotten
+        drawing.add_done_callback(
+            lambda done: self._store_result(request, state, begun, done, stored)
+        )
         return stored
 
     def _store_result(
-        self, request: DrawingRequest, state: State, done: "Future[bytes]", stored: "Future[None]"
+        self,
+        request: DrawingRequest,
+        state: State,
+        begun: int,
+        done: "Future[bytes]",
+        stored: "Future[None]",
     ) -> None:
         error = CancelledError() if done.cancelled() else done.exception()
         with self._lock:
-            self._in_progress.pop(request, None)
+            if begun != self._forgotten:
+                # Made from data that have been erased since.
+                error = CancelledError()
+            else:
+                self._in_progress.pop(request, None)
             if error is None:
                 self._cache[request] = Drawn(done.result(), state, self.utc_now())
                 self._cache.move_to_end(request)
@@ -166,7 +232,7 @@ class Drawings(Part):
             stored.set_result(None)
             return
         stored.set_exception(error)
-        if not done.cancelled():
+        if not isinstance(error, CancelledError):
             log.error(
                 "the %s of %s could not be drawn",
                 request.result_kind,
@@ -204,6 +270,18 @@ def sheet(
     from app.features.results.analysis import worker_tasks
 
     return worker_tasks.sheet(url, study_key, kind, chosen, figure)
+
+
+def join_figures(bodies: Sequence[bytes]) -> bytes:
+    """Return the dashboard of all figures from those of its groups, in the order of `GROUPS`.
+
+    All must be of the same data and filter. The figures are the last field of a dashboard.
+    """
+    # Quotes within a JSON string are escaped, so this is found nowhere else.
+    opening = b'"figures":['
+    begin = bodies[0].index(opening) + len(opening)
+    figures = (body[body.index(opening) + len(opening) : -len(b"]}")] for body in bodies)
+    return bodies[0][:begin] + b",".join(filter(None, figures)) + b"]}"
 
 
 def _failed(why: str) -> NotDurable:

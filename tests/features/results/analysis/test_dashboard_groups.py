@@ -3,9 +3,11 @@
 from typing import get_args
 
 import pytest
+from pydantic import BaseModel
 
 from app.database import Database
 from app.features.results.analysis.dashboard import dashboard_of, drawings_of
+from app.features.results.analysis.drawing import GROUPS, join_figures
 from app.features.results.analysis.material import MaterialStore, read_material
 from app.features.results.analysis.schemas import FigureGroup
 from app.features.results.analysis.state import state_of_data
@@ -18,17 +20,27 @@ def _build(database: Database, *specs: SessionSpec) -> None:
             build_session(db, spec)
 
 
+def json_of(view: BaseModel) -> bytes:
+    """Return a view as the JSON that a worker process makes of it."""
+    return view.model_dump_json().encode()
+
+
 @pytest.mark.one_engine
 def test_a_group_has_its_figures_and_reads_only_its_tables(
     database: Database,
 ) -> None:
-    """A group has the same figures as on the whole dashboard and reads only the tables it needs."""
+    """A group has the same figures as on the whole dashboard and reads only the tables it needs.
+
+    Joined, the groups are the whole dashboard, byte for byte.
+    """
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
     with database.reading() as db:
         material = MaterialStore().get(db, STUDY, "people", "first")
         progress = dashboard_of(material, group="progress")
         assert set(material.tables) == {"sessions", "limbs"}
         groups = [dashboard_of(material, group=group).figures for group in get_args(FigureGroup)]
+        bodies = [json_of(dashboard_of(material, group=group)) for group in GROUPS]
+        assert join_figures(bodies) == json_of(dashboard_of(material))
     assert [one.key for one in progress.figures] == ["progress_time", "progress"]
     whole = {one.key: one for one in dashboard_of(material).figures}
     assert {one.key: one for figures in groups for one in figures} == whole

@@ -9,9 +9,11 @@ import pytest
 from fastapi.testclient import TestClient
 from pydantic import SecretStr
 
+from app.features.results.analysis import Drawings
 from app.main import create_app
 from app.settings import Settings
 from tests.features.builders import STUDY, SessionSpec, build_session
+from tests.features.results.analysis.workers import InlineWorker
 from tests.support.sqlite import fresh_sqlite
 
 
@@ -129,3 +131,19 @@ def test_the_previous_figures_are_sent_while_new_ones_are_drawn(own_client: Test
         time.sleep(0.05)
     assert (older["current"], older["n_sessions"]) in ((False, 0), (True, 1))
     assert view["n_sessions"] == 1
+
+
+def test_figures_forget_an_erased_participant(own_client: TestClient) -> None:
+    """After an erasure no cached figures contain the participant, not even outdated ones."""
+    drawings = own_client.app.state.context.part(Drawings)  # type: ignore[attr-defined]  # ours
+    drawings._worker = InlineWorker()
+    path, query = f"/api/studies/{STUDY}/dashboard", {"kind": "simulated", "group": "progress"}
+    assert b"SIM-0002" in own_client.get(path, params=query).content
+    people = own_client.get(f"/api/studies/{STUDY}/participants").json()
+    [id_] = [one["id"] for one in people if one["code"] == "SIM-0002"]
+    body = {"confirm": "SIM-0002", "reason_code": "withdrawn"}
+    erased = own_client.post(f"/api/studies/{STUDY}/participants/{id_}/erasure", json=body)
+    assert erased.status_code == 201
+    found = own_client.get(path, params=query)
+    assert found.json()["current"] is True
+    assert b"SIM-0002" not in found.content
