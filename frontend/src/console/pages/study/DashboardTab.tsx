@@ -39,11 +39,18 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
   const query = useQuery(dashboardQuery(study.key, filter, FIRST));
   return (
     <>
-      <div className={page.toolbar}>
+      <div className={`${page.toolbar} ${classes.selection}`}>
         <KindFilter
           kind={filter.kind}
           onChange={(kind) => setFilter({ ...filterFrom(new URLSearchParams()), kind })}
         />
+        {filter.kind === "simulated" && (
+          <div className={classes.simulated}>
+            <Notice tone="sim" title={t("simulated.title")}>
+              {t("simulated.body")}
+            </Notice>
+          </div>
+        )}
         <Counted
           found={query.data}
           doing={query.data?.current === false ? t("dashboard.drawing") : null}
@@ -54,33 +61,17 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
           <>
             <SummaryRow study={study} kind={filter.kind} counts={dashboard} />
             <FilterBar filter={filter} choices={dashboard.choices} onChange={setFilter} />
-            <Banners dashboard={dashboard} />
+            {dashboard.filter.rows === "all" && (
+              <div className={classes.banner}>
+                <Notice tone="warn" title={t("figures.all")}>
+                  {t("figures.all.body")}
+                </Notice>
+              </div>
+            )}
             <Groups studyKey={study.key} filter={filter} groups={[FIRST, ...AFTERWARDS]} enabled />
           </>
         )}
       </Loaded>
-    </>
-  );
-}
-
-function Banners({ dashboard }: { readonly dashboard: Dashboard }): JSX.Element {
-  const { t } = useTexts();
-  return (
-    <>
-      {dashboard.simulated && (
-        <div className={classes.banner}>
-          <Notice tone="sim" title={t("simulated.title")}>
-            {t("simulated.body")}
-          </Notice>
-        </div>
-      )}
-      {dashboard.filter.rows === "all" && (
-        <div className={classes.banner}>
-          <Notice tone="warn" title={t("figures.all")}>
-            {t("figures.all.body")}
-          </Notice>
-        </div>
-      )}
     </>
   );
 }
