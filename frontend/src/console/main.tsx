@@ -1,7 +1,14 @@
 import "@shared/theme/mantine.css";
+import { Notifications } from "@mantine/notifications";
 import { mountPage } from "@shared/ui/Page";
 import { Console } from "./Console";
 import { loaded, translations } from "./i18n";
 
+const children = (
+  <>
+    <Notifications position="bottom-right" autoClose={5000} />
+    <Console />
+  </>
+);
 // Not `await`: a module that waits at its top would keep the bundler from joining small files.
-void loaded.then(() => mountPage({ translations, children: <Console /> }));
+void loaded.then(() => mountPage({ translations, children }));

@@ -1,13 +1,17 @@
 /** The look of the product, as Mantine tokens; colours that carry meaning are in `tokens.css`. */
 import {
-  Button,
+  type ButtonProps,
+  type ButtonStylesNames,
   createTheme,
-  Drawer,
+  type DrawerProps,
+  type DrawerStylesNames,
   type MantineColorsTuple,
-  Modal,
-  Paper,
-  Tooltip,
+  type ModalProps,
+  type ModalStylesNames,
+  type PaperProps,
+  type TooltipProps,
 } from "@mantine/core";
+import type { CSSProperties } from "react";
 
 const petrol: MantineColorsTuple = [
   "#eaf6f7",
@@ -82,23 +86,32 @@ export const theme = createTheme({
   cursorType: "pointer",
   focusRing: "auto",
   respectReducedMotion: true,
+  // By names and types: naming the components themselves would load them into every page.
   components: {
-    Paper: Paper.extend({ defaultProps: { withBorder: true, radius: "lg", p: "lg" } }),
-    Modal: Modal.extend({
-      defaultProps: {
+    Paper: look<PaperProps>({ withBorder: true, radius: "lg", p: "lg" }),
+    Modal: look<ModalProps, ModalStylesNames>(
+      {
         radius: "lg",
         centered: true,
         transitionProps: { duration: 120 },
         overlayProps: { backgroundOpacity: 0.4 },
       },
-      styles: { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { padding: "4px 8px" } },
-    }),
-    Drawer: Drawer.extend({
-      defaultProps: { overlayProps: { backgroundOpacity: 0.4 } },
+      { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { padding: "4px 8px" } },
+    ),
+    Drawer: look<DrawerProps, DrawerStylesNames>(
+      { overlayProps: { backgroundOpacity: 0.4 } },
       // The title sticks to the very top, or scrolled content would show above it.
-      styles: { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { paddingTop: 0 } },
-    }),
-    Button: Button.extend({ styles: { label: { fontWeight: 560 } } }),
-    Tooltip: Tooltip.extend({ defaultProps: { openDelay: 300, withArrow: true } }),
+      { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { paddingTop: 0 } },
+    ),
+    Button: look<ButtonProps, ButtonStylesNames>({}, { label: { fontWeight: 560 } }),
+    Tooltip: look<TooltipProps>({ openDelay: 300, withArrow: true }),
   },
 });
+
+/** What a component looks like unless it is told otherwise. */
+function look<Props, Part extends string = never>(
+  defaultProps: Partial<Props>,
+  styles: Partial<Record<Part, CSSProperties>> = {},
+) {
+  return { defaultProps, styles };
+}

@@ -1,8 +1,7 @@
 /**
- * What every page starts with: theme, data cache, notifications. The page imports its styles first.
+ * What every page starts with: theme, data cache, failed parts. The page imports its styles first.
  */
 import { MantineProvider } from "@mantine/core";
-import { Notifications } from "@mantine/notifications";
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
 import type { i18n } from "i18next";
 import { type JSX, type ReactNode, StrictMode, useEffect } from "react";
@@ -44,7 +43,6 @@ function Page({ translations, children }: PageProps): JSX.Element {
       <MantineProvider theme={theme} defaultColorScheme="auto">
         <I18nextProvider i18n={translations}>
           <QueryClientProvider client={queries}>
-            <Notifications position="bottom-right" autoClose={5000} />
             <Boundary>{children}</Boundary>
             <UnloadedBar />
           </QueryClientProvider>
