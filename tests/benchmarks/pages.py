@@ -13,7 +13,6 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from tests.benchmarks.every_page.accessibility import Examiner
 from tests.benchmarks.every_page.lab import filled_lab
 from tests.benchmarks.every_page.routes import ROUTES, forgotten_paths
 from tests.benchmarks.every_page.visit import SHIFT_LIMIT, WIDTHS_PX, ZOOMS, Row, opened_window
@@ -30,7 +29,6 @@ def measure(parts: frozenset[str], widths: Sequence[int] = WIDTHS_PX) -> Report:
     report = Report("pages")
     chosen = os.environ.get(SCREENSHOTS_VARIABLE)
     rows: list[Row] = []
-    examiner = Examiner()
     with (
         tempfile.TemporaryDirectory(prefix="reembody-bench-") as scratch,
         filled_lab(Path(scratch)) as lab,
@@ -40,7 +38,7 @@ def measure(parts: frozenset[str], widths: Sequence[int] = WIDTHS_PX) -> Report:
             asked = [one for one in ROUTES if one.reader == reader and one.name in parts]
             if not asked:
                 continue
-            with opened_window(browser, lab, reader, width_px, zoom, examiner) as window:
+            with opened_window(browser, lab, reader, width_px, zoom) as window:
                 for route in asked:
                     for row in window.looks(route, Path(chosen) if chosen else None):
                         _tell(row)
@@ -53,7 +51,6 @@ def measure(parts: frozenset[str], widths: Sequence[int] = WIDTHS_PX) -> Report:
     report.add(Figure("console", "routes not looked at", len(forgotten), "", "at most", 0))
     report.beside = {
         "not_looked_at": forgotten,
-        "repeated_examinations": examiner.repeated,
         "rows": [row.as_json() for row in rows],
         "found": [
             {"route": row.route, "width": row.width, "theme": row.theme, "zoom": row.zoom}

@@ -15,7 +15,7 @@ from typing import Any
 from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize
 from playwright.sync_api import TimeoutError as NotInTime
 
-from tests.benchmarks.every_page.accessibility import COLOUR_RULES, Examiner
+from tests.benchmarks.every_page.accessibility import COLOUR_RULES, violations
 from tests.benchmarks.every_page.lab import FilledLab
 from tests.benchmarks.every_page.routes import Route
 from tests.support.browser import (
@@ -124,8 +124,6 @@ class Window:
     width_px: int
     """Of the window, in pixels of the screen; the page has `width_px / zoom` CSS pixels."""
     zoom: int
-    examiner: Examiner
-    """Shared by the windows of a pass."""
     watch: PageWatch = field(default_factory=PageWatch)
 
     def looks(self, route: Route, pictures: Path | None = None) -> Iterator[Row]:
@@ -145,7 +143,7 @@ class Window:
             rules: dict[str, str] = {}
             for at, theme in enumerate(in_both_schemes(page)):
                 # Another theme changes colours only, so only their rules are checked again.
-                found = self.examiner.violations(page, colours_only=at > 0)
+                found = violations(page, colours_only=at > 0)
                 of_theme = {**rules, **found} if at > 0 else found
                 rules = {rule: text for rule, text in found.items() if rule not in COLOUR_RULES}
                 out = page.evaluate(OVERFLOW)
@@ -179,12 +177,7 @@ class Window:
 
 @contextmanager
 def opened_window(
-    browser: Browser,
-    lab: FilledLab,
-    reader: str,
-    width_px: int,
-    zoom: int,
-    examiner: Examiner,
+    browser: Browser, lab: FilledLab, reader: str, width_px: int, zoom: int
 ) -> Iterator[Window]:
     """Open a window with the cookies of `reader`, one of `FilledLab.cookies`, or of nobody."""
     height_px = HEIGHTS_PX.get(width_px, 800)
@@ -200,7 +193,7 @@ def opened_window(
         context.add_init_script(OBSERVE_SHIFTS)
         for name, morsel in SimpleCookie(lab.cookies.get(reader, "")).items():
             context.add_cookies([{"name": name, "value": morsel.value, "url": lab.server.url}])
-        window = Window(context, lab, width_px, zoom, examiner)
+        window = Window(context, lab, width_px, zoom)
         window.watch.attach(context)
         yield window
     finally:
