@@ -249,6 +249,9 @@ class Drawings(Part):
 
     def stop(self) -> None:
         """End the worker processes, including any work in progress."""
+        with self._lock:
+            # What is in progress has not failed.
+            self._forgotten += 1
         self._worker.end()
         self._tester.end()
 

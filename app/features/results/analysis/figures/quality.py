@@ -1,5 +1,6 @@
 """Figures of recording quality: frame rates, gaps and alarms."""
 
+import numpy as np
 import pandas as pd
 import plotly.graph_objects as go
 
@@ -69,8 +70,9 @@ def quality_drawing(quality: pd.DataFrame) -> Drawing:
 def _box(own: pd.DataFrame, name: str, stream: str, style: tuple[str, str]) -> go.Box:
     colour, symbol = style
     return go.Box(
-        x=[stream] * len(own),
-        y=own[name].astype("float64").tolist(),
+        # dtype=object: plotly would inspect every item of a list, and encode numbers in binary.
+        x=np.full(len(own), stream, dtype=object),
+        y=own[name].astype("float64").to_numpy(dtype=object),
         name=stream,
         boxpoints="all" if len(own) <= _MAX_POINTS else "outliers",
         jitter=0.6,
@@ -78,7 +80,7 @@ def _box(own: pd.DataFrame, name: str, stream: str, style: tuple[str, str]) -> g
         fillcolor=CALM,
         line={"color": colour, "width": 2},
         marker={"color": colour, "symbol": symbol, "size": 4},
-        text=own["participant_code"].tolist(),
+        text=own["participant_code"].to_numpy(dtype=object),
         hovertemplate=f"%{{text}}: %{{y:.2f}}<extra>{stream}</extra>",
     )
 
