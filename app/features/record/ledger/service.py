@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import NamedTuple
 
-from sqlalchemy import Select, Text, cast, func, select
+from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
 from app.database import referenced_row
@@ -226,35 +226,30 @@ def ledger_of(db: Session, version: StudyVersion, kind: str) -> tuple[SlotView, 
     )
     if ledger is None:
         return ()
-    # Only the columns needed, and past the session, which adds work to every row: a thousand rows
-    # of each table are most of the work. There are few orders, so each is parsed once.
-    db.flush()
-    slots = (
-        db.connection()
-        .execute(
-            select(
-                LedgerSlot.id,
-                LedgerSlot.position,
-                LedgerSlot.block,
-                LedgerSlot.replicate,
-                cast(LedgerSlot.sequence, Text),
-            )
-            .where(LedgerSlot.ledger_id == ledger.id)
-            .order_by(LedgerSlot.position)
+    # Only the columns needed: a thousand complete rows of each table would be most of the work.
+    slots = db.execute(
+        select(
+            LedgerSlot.id,
+            LedgerSlot.position,
+            LedgerSlot.block,
+            LedgerSlot.replicate,
+            LedgerSlot.sequence,
         )
-        .all()
-    )
-    orders = {text: json.loads(text) for *_, text in slots}
+        .where(LedgerSlot.ledger_id == ledger.id)
+        .order_by(LedgerSlot.position)
+    ).all()
     attempts = _attempts(db, ledger.id)
     return tuple(
-        SlotView(position, block, replicate, orders[order], attempts.get(id_, ()))
-        for id_, position, block, replicate, order in slots
+        SlotView(
+            slot.position, slot.block, slot.replicate, slot.sequence, attempts.get(slot.id, ())
+        )
+        for slot in slots
     )
 
 
 def _attempts(db: Session, ledger_id: str) -> dict[str, list[SlotAttemptDetails]]:
     """Return the attempts on the slots of a ledger by slot, oldest first."""
-    rows = db.connection().execute(
+    rows = db.execute(
         select(
             SlotAttempt.slot_id,
             SlotAttempt.session_id,
@@ -272,7 +267,7 @@ def _attempts(db: Session, ledger_id: str) -> dict[str, list[SlotAttemptDetails]
     )
     reasons = _end_reasons(db, ledger_id)
     attempts: dict[str, list[SlotAttemptDetails]] = {}
-    for slot_id, session_id, code, outcome, opened_at, closed_at, stored in rows.all():
+    for slot_id, session_id, code, outcome, opened_at, closed_at, stored in rows:
         one = SlotAttemptDetails(
             session_id,
             code,

@@ -70,9 +70,7 @@ def of_kind(study: Study, kind: Kind) -> ColumnElement[bool]:
 
 def read(db: Session, query: Select[*tuple[Any, ...]], names: Sequence[str]) -> pd.DataFrame:
     """Return the rows of a query under these column names, with the database's objects."""
-    # The session would send its pending rows; its own reading of columns takes twice as long.
-    db.flush()
-    rows = [tuple(row) for row in db.connection().execute(query).all()]
+    rows = [tuple(row) for row in db.execute(query)]
     return pd.DataFrame(rows, columns=list(names), dtype=object)
 
 
