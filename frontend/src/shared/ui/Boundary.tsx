@@ -7,7 +7,7 @@ import {
   Component,
   type JSX,
   type ReactNode,
-  useEffect,
+  useLayoutEffect,
   useState,
   useSyncExternalStore,
 } from "react";
@@ -63,7 +63,8 @@ const useTexts = () => useTranslations<KeyOf<typeof pageEn>>();
 
 /** Says where a part would be why it could not be loaded. */
 export function UnloadedNotice(): JSX.Element {
-  useEffect(showInPlace, []);
+  // Before anything is drawn, or the bar would say the same beside it for a moment.
+  useLayoutEffect(showInPlace, []);
   return (
     <div className={classes.inPlace}>
       <Reason />
