@@ -28,7 +28,8 @@ STUDY = "reembodiment-latency"
 PASSWORD = "correct horse battery"
 FORM = "block1.hand.karas2020"
 ANSWERS: Json = {f"q{number}": 4 for number in range(1, 15)} | {"problems": "Nothing at all."}
-IDLE_S = 2.0
+IDLE_S = 6.0
+"""How long the idle server is watched; its slowest timer fires every five seconds."""
 CALLABLE = 0x1
 """CO_OPTIMIZED: the code of a function, lambda or comprehension, not of a module or class."""
 AGAIN = 0x20 | 0x80 | 0x200
