@@ -141,9 +141,10 @@ class LogKeeper:
         """Open the log, unless it is open already."""
         with self._mutex:
             if self._kept is None:
-                self._kept = sqlite3.connect(self._file, check_same_thread=False)
+                kept = sqlite3.connect(self._file, check_same_thread=False)
                 # SQLite opens the log with the first statement that reads.
-                self._kept.execute("PRAGMA schema_version").fetchone()
+                kept.execute("PRAGMA schema_version").fetchone()
+                self._kept = kept
 
     def release(self, _engine: Engine) -> None:
         """Close the log with the engine, so that SQLite can tidy up."""

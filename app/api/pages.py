@@ -140,8 +140,7 @@ def install_pages(
     router = APIRouter(include_in_schema=False)
     for address, file in PAGES.items():
         more = ISOLATION if address in ISOLATED else {}
-        first = first_answers.get(address)
-        page = _page(static / file, more) if first is None else _page_with(static / file, first)
+        page = _page(static / file, more, first_answers.get(address))
         router.add_api_route(address, page, methods=["GET"])
     worker = _worker(static / TABLET_WORKER[1:])
     router.add_api_route(TABLET_WORKER, worker, methods=["GET"])
@@ -150,36 +149,37 @@ def install_pages(
         app.mount("/assets", Assets(directory=static / "assets"), name="assets")
 
 
-def _page(file: Path, more_headers: Mapping[str, str]) -> Callable[[], Response]:
-    def serve() -> Response:
+def _page(
+    file: Path, more_headers: Mapping[str, str], first: FirstAnswer | None
+) -> Callable[[Request], Response]:
+    def serve(request: Request) -> Response:
         if not file.is_file():
             return HTMLResponse(_NOT_BUILT, status_code=503)
-        return FileResponse(file, headers={"cache-control": "no-cache", **more_headers})
-
-    return serve
-
-
-def _page_with(file: Path, first: FirstAnswer) -> Callable[[Request], Response]:
-    plain = _page(file, {})
-
-    def serve(request: Request) -> Response:
-        try:
-            answer = first(request)
-        except Exception:
-            # The page opens without it, asks for itself, and shows what was wrong.
-            log.exception("the first answer could not be written into %s", file.parent.name)
-            answer = None
-        if answer is None or not file.is_file():
-            return plain()
-        # As text of JSON, so that nothing in it can end the element.
-        data = answer.replace("<", "\\u003c")
-        element = f'<script type="application/json" id="{FIRST_ANSWER}">{data}</script>'
-        html = _PRELOADED.sub("", file.read_text(encoding="utf-8"))
-        html = html.replace("</head>", f"{element}</head>", 1)
+        answer = None if first is None else _answer_if_possible(first, request)
+        if answer is None:
+            return FileResponse(file, headers={"cache-control": "no-cache", **more_headers})
         # It is a participant's: no cache may keep it.
-        return HTMLResponse(html, headers={"cache-control": "no-store"})
+        html = _with_answer(file.read_text(encoding="utf-8"), answer)
+        return HTMLResponse(html, headers={"cache-control": "no-store", **more_headers})
 
     return serve
+
+
+def _answer_if_possible(first: FirstAnswer, request: Request) -> str | None:
+    """Return the answer; if it fails, the page opens without it, asks, and shows what is wrong."""
+    try:
+        return first(request)
+    except Exception as error:  # noqa: BLE001 - the page's own request reports it
+        # Without a traceback, which must not fill a full disk.
+        log.warning("a page is sent without its first answer: %s", error)
+        return None
+
+
+def _with_answer(html: str, answer: str) -> str:
+    """Return a page with an answer written into it as JSON, which nothing in it can end."""
+    data = answer.replace("<", "\\u003c")
+    element = f'<script type="application/json" id="{FIRST_ANSWER}">{data}</script>'
+    return _PRELOADED.sub("", html).replace("</head>", f"{element}</head>", 1)
 
 
 def _worker(file: Path) -> Callable[[], Response]:

@@ -77,7 +77,7 @@ def get_state(request: Request, context: Context) -> Response:
 @router.get("/paired", response_model=TabletPaired)
 def get_paired(request: Request, context: Context) -> TabletPaired:
     """Return the tablet's screen; null (and not an error) if the tablet is not paired."""
-    return screen_of(context, read_cookie(request, TABLET_COOKIE) or bearer_token(request))
+    return _screen_of(context, read_cookie(request, TABLET_COOKIE) or bearer_token(request))
 
 
 def first_answer(request: Request) -> str | None:
@@ -85,10 +85,10 @@ def first_answer(request: Request) -> str | None:
     token = read_cookie(request, TABLET_COOKIE)
     if token is None:
         return None
-    return screen_of(request.app.state.context, token).model_dump_json()
+    return _screen_of(request.app.state.context, token).model_dump_json()
 
 
-def screen_of(context: AppContext, token: str | None) -> TabletPaired:
+def _screen_of(context: AppContext, token: str | None) -> TabletPaired:
     """Return the screen of the tablet that has this token, and note that it was seen."""
     with context.database.reading() as db:
         try:

@@ -22,12 +22,23 @@ interface NoticeProps {
   readonly remedy?: ReactNode;
   readonly actions?: ReactNode;
   readonly icon?: IconName;
+  /** In one line, smaller, where it stands beside other things. */
+  readonly compact?: boolean;
 }
 
-export function Notice({ tone, title, children, remedy, actions, icon }: NoticeProps): JSX.Element {
+export function Notice({
+  tone,
+  title,
+  children,
+  remedy,
+  actions,
+  icon,
+  compact = false,
+}: NoticeProps): JSX.Element {
   return (
     <div
       className={`${classes.notice} ${classes[tone]}`}
+      data-compact={compact || undefined}
       role={tone === "bad" ? "alert" : "status"}
     >
       <Icon name={icon ?? ICONS[tone]} />

@@ -6,11 +6,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from pydantic import SecretStr
 
 from app.features.results.analysis import Drawings
 from app.main import create_app
+from app.platform.context import AppContext
 from app.settings import Settings
 from tests.features.builders import STUDY, SessionSpec, build_session
 from tests.features.results.analysis.workers import InlineWorker
@@ -118,11 +120,18 @@ def test_a_dashboard_needs_a_login(client: TestClient) -> None:
     assert stranger.get(f"/api/studies/{STUDY}/dashboard").status_code == 401
 
 
+def _context(client: TestClient) -> AppContext:
+    """Return the context of the application that a client talks to."""
+    assert isinstance(client.app, FastAPI)
+    context: AppContext = client.app.state.context
+    return context
+
+
 def test_the_previous_figures_are_sent_while_new_ones_are_drawn(own_client: TestClient) -> None:
     """While new data are drawn, requests get the previous figures, marked as not current."""
     path, people = f"/api/studies/{STUDY}/dashboard", {"kind": "people"}
     assert own_client.get(path, params=people).json()["current"] is True
-    with own_client.app.state.context.database.writing() as db:  # type: ignore[attr-defined]  # ours
+    with _context(own_client).database.writing() as db:
         build_session(db, SessionSpec("P-0001"))
     older = own_client.get(path, params=people).json()
     deadline = time.monotonic() + 60.0
@@ -135,7 +144,7 @@ def test_the_previous_figures_are_sent_while_new_ones_are_drawn(own_client: Test
 
 def test_figures_forget_an_erased_participant(own_client: TestClient) -> None:
     """After an erasure no cached figures contain the participant, not even outdated ones."""
-    drawings = own_client.app.state.context.part(Drawings)  # type: ignore[attr-defined]  # ours
+    drawings = _context(own_client).part(Drawings)
     drawings._worker = InlineWorker()
     path, query = f"/api/studies/{STUDY}/dashboard", {"kind": "simulated", "group": "progress"}
     assert b"SIM-0002" in own_client.get(path, params=query).content

@@ -46,7 +46,7 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
         />
         {filter.kind === "simulated" && (
           <div className={classes.simulated}>
-            <Notice tone="sim" title={t("simulated.title")}>
+            <Notice tone="sim" title={t("simulated.title")} compact>
               {t("simulated.body")}
             </Notice>
           </div>
