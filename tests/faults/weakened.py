@@ -11,7 +11,7 @@ from sqlalchemy.pool import ConnectionPoolEntry
 
 from app import database
 from app.cli import main
-from app.database import prepare_connection
+from app.sqlite_connections import prepare_connection
 
 
 def weaken(level: str) -> None:

@@ -16,11 +16,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
-from app.database import BUSY_TIMEOUT_S
 from app.features.care.backups import TableShape, columns_in, shapes_at, wrong_rows, wrong_tables
 from app.features.care.opening.wal import frames_noted, inspect_log
 from app.platform.trouble import not_durable_error, proves_damage
 from app.schema_revisions import VERSION_TABLE, all_revisions, newest_revision
+from app.sqlite_connections import BUSY_TIMEOUT_S
 
 MAGIC = b"SQLite format 3\x00"
 ALWAYS_CHECKED_BYTES = 2 * 10**9
