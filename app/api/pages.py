@@ -19,6 +19,8 @@ from fastapi.staticfiles import StaticFiles
 from starlette.datastructures import Headers
 from starlette.types import Scope
 
+from app.errors import ReembodyError
+
 log = logging.getLogger(__name__)
 FirstAnswer = Callable[[Request], str | None]
 """Returns, as JSON, the answer to the first request that a page would send; None to let it ask."""
@@ -141,9 +143,9 @@ def install_pages(
     for address, file in PAGES.items():
         more = ISOLATION if address in ISOLATED else {}
         page = _page(static / file, more, first_answers.get(address))
-        router.add_api_route(address, page, methods=["GET"])
+        router.add_api_route(address, page, methods=["GET", "HEAD"])
     worker = _worker(static / TABLET_WORKER[1:])
-    router.add_api_route(TABLET_WORKER, worker, methods=["GET"])
+    router.add_api_route(TABLET_WORKER, worker, methods=["GET", "HEAD"])
     app.include_router(router)
     if (static / "assets").is_dir():
         app.mount("/assets", Assets(directory=static / "assets"), name="assets")
@@ -169,6 +171,8 @@ def _answer_if_possible(first: FirstAnswer, request: Request) -> str | None:
     """Return the answer; if it fails, the page opens without it, asks, and shows what is wrong."""
     try:
         return first(request)
+    except ReembodyError:
+        return None
     except Exception as error:  # noqa: BLE001 - the page's own request reports it
         # Without a traceback, which must not fill a full disk.
         log.warning("a page is sent without its first answer: %s", error)

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
+from functools import partial
 from typing import ParamSpec, Self, TypeVar
 
 from app.gc_tuning import relax_gc
@@ -61,13 +62,17 @@ class Worker:
 
     def end(self) -> None:
         """Kill the process with its current task; the next task gets a new process."""
+        self.let_go()()
+
+    def let_go(self) -> Callable[[], None]:
+        """Give the next task a new process; return what kills the one until now.
+
+        The tasks of that process fail while it is killed, and whatever waits for their results runs
+        meanwhile: call it without holding a lock that this needs.
+        """
         with self._lock:
             pool, self._pool = self._pool, None
-        if pool is not None:
-            for process in list((getattr(pool, "_processes", None) or {}).values()):
-                # Killed, not terminated: it may be stuck where Python does not handle signals.
-                process.kill()
-            pool.shutdown(wait=True, cancel_futures=True)
+        return partial(_kill, pool)
 
     def _look(self, pool: ProcessPoolExecutor, done: "Future[T]") -> None:
         if done.cancelled():
@@ -92,6 +97,15 @@ class Worker:
             if is_current:
                 self._pool = None
             return is_current
+
+
+def _kill(pool: ProcessPoolExecutor | None) -> None:
+    if pool is None:
+        return
+    for process in list((getattr(pool, "_processes", None) or {}).values()):
+        # Killed, not terminated: it may be stuck where Python does not handle signals.
+        process.kill()
+    pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _begin(prepare: Callable[[], None] | None) -> None:

@@ -37,3 +37,14 @@ def test_a_page_opens_without_an_answer_that_fails(tmp_path: Path) -> None:
     assert written.count("</script>") == 1
     assert f'{element}{{"state": "\\u003c/script>\\u003cb>"}}</script></head>' in written
     assert client.get("/tablet").text == html
+
+
+def test_a_page_answers_a_request_for_its_headers(tmp_path: Path) -> None:
+    """Monitors and link checkers ask with HEAD, and get the status and headers of the page."""
+    (tmp_path / "tablet").mkdir()
+    (tmp_path / "tablet/index.html").write_text("<html><head></head><body></body></html>")
+    app = FastAPI()
+    install_pages(app, tmp_path)
+    asked = TestClient(app).head("/tablet")
+    assert (asked.status_code, asked.content) == (200, b"")
+    assert asked.headers["content-type"] == "text/html; charset=utf-8"

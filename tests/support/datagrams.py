@@ -19,6 +19,14 @@ def free_udp_port() -> int:
 
 
 @contextmanager
+def taken_port(port: int) -> Iterator[None]:
+    """Use a UDP port during the block, as another program would."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind((HERE, port))
+        yield
+
+
+@contextmanager
 def sender(port: int) -> Iterator[Callable[[bytes], object]]:
     """Yield a function that sends a datagram, from one address, to a port of this machine."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:

@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 from app.adapters.live import Reading
 from app.errors import InvalidInput
 from app.features.movement.live.doors import USUAL_PORTS, DoorSettings, interfaces, stored_doors
-from app.features.movement.live.listening import Listener, Received
+from app.features.movement.live.listening import DoorState, Listener, Received
 from app.features.movement.live.schemas import (
     DoorView,
     LimbWish,
@@ -67,9 +67,10 @@ class LiveTracking(Part):
                 listener.stop()
             self._listeners.clear()
 
-    def is_open(self, door: str) -> bool:
-        """Return whether a door is open, or tries to be."""
-        return door in self._listeners
+    def state_of(self, door: str) -> DoorState | None:
+        """Return the state of a door, `failed` while it tries in vain; None if it is closed."""
+        listener = next((one for key, one in self._listeners.items() if key == door), None)
+        return None if listener is None else listener.state
 
     def follow(self, door: DoorKey) -> None:
         """Open or close a door, or open it anew, as its stored settings say.

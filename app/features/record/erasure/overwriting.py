@@ -28,7 +28,8 @@ from app.settings import Settings
 
 log = logging.getLogger(__name__)
 MARKER = "erasure-unfinished"
-TRIES, PAUSE_S = 20, 0.25
+TRIES, PAUSE_S, READER_MS = 40, 0.5, 100
+"""How often to try to cut the log, the pause between, and the wait for a reader each time."""
 ROOM = 1.2
 """Rewriting the database needs this many times its size as free space."""
 
@@ -97,27 +98,43 @@ def _marker(settings: Settings) -> Path:
 
 
 def _sqlite(database: Database, *, starting: bool) -> bool:
-    # Block checkpoints and writers from the first truncation of the log to the last.
-    with database.commits.copying, database.write_turn():
-        cut = _cut_log(database)
-        rewrite = cut and (starting or _no_session_runs(database)) and _has_room(database)
-        if rewrite:
-            _execute(database, "VACUUM")
-            cut = _cut_log(database)
-        if cut:
+    """Cut the log, rewrite the file and cut the log again; try for a while if a reader uses it.
+
+    Writers wait for one attempt at a time, and not for the reader, who may go on for long.
+    """
+    is_rewritten = False
+    for attempt in range(TRIES):
+        if attempt > 0:
+            time.sleep(PAUSE_S)
+        with database.commits.copying, database.write_turn():
+            if not _cut_log(database):
+                continue
+            may_rewrite = starting or _no_session_runs(database)
+            if not is_rewritten and may_rewrite and _has_room(database):
+                _execute(database, "VACUUM")
+                is_rewritten = True
+                if not _cut_log(database):
+                    continue
             database.commits.copied = database.commits.number
-    return cut and rewrite
+            return is_rewritten
+    log.warning("the write-ahead log could not be truncated: a reader is still using it")
+    return False
 
 
 def _cut_log(database: Database) -> bool:
-    """Checkpoint the whole log and truncate it; retry for a while if a reader blocks this."""
-    for _ in range(TRIES):
-        busy, *_rest = _execute(database, "PRAGMA wal_checkpoint(TRUNCATE)") or (0,)
-        if not busy:
-            return True
-        time.sleep(PAUSE_S)
-    log.warning("the write-ahead log could not be truncated: a reader is still using it")
-    return False
+    """Checkpoint the whole log and truncate it; return False if a reader is still using it."""
+    connection = database.engine.raw_connection()
+    try:
+        cursor = connection.cursor()
+        usual_ms = cursor.execute("PRAGMA busy_timeout").fetchone()[0]
+        try:
+            cursor.execute(f"PRAGMA busy_timeout={READER_MS}")
+            busy = cursor.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
+            return not busy
+        finally:
+            cursor.execute(f"PRAGMA busy_timeout={usual_ms}")
+    finally:
+        connection.close()
 
 
 def _no_session_runs(database: Database) -> bool:
@@ -138,13 +155,10 @@ def _postgresql(database: Database) -> bool:
     return True
 
 
-def _execute(database: Database, statement: str) -> tuple[int, ...] | None:
+def _execute(database: Database, statement: str) -> None:
     """Execute a statement outside the transaction that the engine would otherwise open."""
     connection = database.engine.raw_connection()
     try:
-        cursor = connection.cursor()
-        cursor.execute(statement)
-        row = cursor.fetchone() if cursor.description else None
-        return None if row is None else tuple(row)
+        connection.cursor().execute(statement)
     finally:
         connection.close()

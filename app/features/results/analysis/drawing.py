@@ -19,8 +19,7 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Literal, Self
 
-from sqlalchemy.orm import Session
-
+from app.database import Database
 from app.errors import NotDurable, ReembodyError
 from app.features.results.analysis.schemas import (
     NO_FILTER,
@@ -73,6 +72,7 @@ class Drawings(Part):
     must not wait for them.
     """
 
+    database: Database
     url: str
     utc_now: Callable[[], datetime]
     _cache: "OrderedDict[DrawingRequest, Drawn]" = field(default_factory=OrderedDict)
@@ -87,6 +87,7 @@ class Drawings(Part):
         """Create the cache of a server's dashboards and tests, with its worker processes."""
         background = context.background
         return cls(
+            context.database,
             context.settings.resolved_database_url,
             context.clock.utc_now,
             _worker=Worker().watched_by(background, "figures"),
@@ -95,7 +96,6 @@ class Drawings(Part):
 
     def dashboard(
         self,
-        db: Session,
         study_key: str,
         kind: DashboardKind,
         chosen: FigureFilter = NO_FILTER,
@@ -106,14 +106,14 @@ class Drawings(Part):
         `group` limits it to one group of figures. Raises NotFound for an unknown study, NotDurable
         where drawing fails.
         """
-        return self._newest(db, DrawingRequest("dashboard", study_key, kind, chosen, group))
+        return self._newest(DrawingRequest("dashboard", study_key, kind, chosen, group))
 
-    def statistics(self, db: Session, study_key: str, kind: DashboardKind) -> tuple[Drawn, bool]:
+    def statistics(self, study_key: str, kind: DashboardKind) -> tuple[Drawn, bool]:
         """Return the latest results of the study's tests, and whether they are of the current data.
 
         Raises the same errors as `dashboard`.
         """
-        return self._newest(db, DrawingRequest("statistics", study_key, kind))
+        return self._newest(DrawingRequest("statistics", study_key, kind))
 
     def sheet(
         self, study_key: str, kind: DashboardKind, chosen: FigureFilter, figure: str
@@ -129,12 +129,12 @@ class Drawings(Part):
         except Exception as error:
             raise _failed(type(error).__name__) from error
 
-    def prepare(self, db: Session, request: DrawingRequest) -> "Future[None] | None":
+    def prepare(self, request: DrawingRequest) -> "Future[None] | None":
         """Start to make a result for whoever will ask for it.
 
         Returns the future of the work, or None if the result of the current data is cached.
         """
-        state = state_of_data(db, request.study_key, request.kind)
+        state = self._state(request)
         with self._lock:
             drawn = self._cache.get(request)
             if drawn is not None and drawn.state == state:
@@ -144,8 +144,10 @@ class Drawings(Part):
     def end_tester(self) -> None:
         """End the process for tests if it is idle: its tables are of no use to a later test."""
         with self._lock:
-            if not any(one.result_kind == "statistics" for one in self._in_progress):
-                self._tester.end()
+            if any(one.result_kind == "statistics" for one in self._in_progress):
+                return
+            end = self._tester.let_go()
+        end()
 
     def forget(self, study_key: str) -> None:
         """Delete everything made from a study's data, some of which have just been erased.
@@ -158,8 +160,10 @@ class Drawings(Part):
             for request in [one for one in self._cache if one.study_key == study_key]:
                 del self._cache[request]
             self._in_progress.clear()
-        self._worker.end()
-        self._tester.end()
+            ends = [self._worker.let_go(), self._tester.let_go()]
+        # Without the lock, which the results that fail now need.
+        for end in ends:
+            end()
 
     def _joined(self, request: DrawingRequest, state: State) -> Drawn | None:
         """Return all figures, joined from their groups if those are cached and current."""
@@ -172,8 +176,17 @@ class Drawings(Part):
         body = join_figures([one.body for one in groups])
         return Drawn(body, state, min(one.at for one in groups))
 
-    def _newest(self, db: Session, request: DrawingRequest) -> tuple[Drawn, bool]:
-        state = state_of_data(db, request.study_key, request.kind)
+    def _state(self, request: DrawingRequest) -> State:
+        """Return the state of the data now.
+
+        In a transaction of its own: one that stayed open while a worker draws would keep an erasure
+        from truncating the database's log.
+        """
+        with self.database.reading() as db:
+            return state_of_data(db, request.study_key, request.kind)
+
+    def _newest(self, request: DrawingRequest) -> tuple[Drawn, bool]:
+        state = self._state(request)
         with self._lock:
             forgotten = self._forgotten
             drawn = self._joined(request, state) or self._cache.get(request)
@@ -189,7 +202,7 @@ class Drawings(Part):
                 raise _failed("it took too long") from None
         except Exception as error:
             if self._forgotten != forgotten:
-                return self._newest(db, request)
+                return self._newest(request)
             raise _failed(type(error).__name__) from error
         with self._lock:
             newest = self._cache.get(request) or drawn

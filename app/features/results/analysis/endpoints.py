@@ -25,16 +25,14 @@ FigureKey = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,79}$")]
 
 @router.get("/studies/{key}/dashboard", response_model=DashboardView)
 def get_dashboard(
-    key: str, db: Reading, context: Context, _: SignedIn, query: Annotated[GroupQuery, Query()]
+    key: str, context: Context, _: SignedIn, query: Annotated[GroupQuery, Query()]
 ) -> Response:
     """Return the latest figures of sessions of one kind; repeat the request until they are current.
 
     The filter selects sessions and rows before anything is drawn. One group of the figures is ready
     sooner than all of them.
     """
-    return _answer(
-        *context.part(Drawings).dashboard(db, key, query.kind, query.filter, query.group)
-    )
+    return _answer(*context.part(Drawings).dashboard(key, query.kind, query.filter, query.group))
 
 
 @router.get(
@@ -45,13 +43,11 @@ def get_dashboard(
 def get_figure_rows(
     key: str,
     figure: FigureKey,
-    db: Reading,
     context: Context,
     caller: SignedIn,
     query: Annotated[DashboardQuery, Query()],
 ) -> Response:
     """Return the rows that a figure is drawn from as CSV, with comment lines that describe them."""
-    study_by_key(db, key)
     body = context.part(Drawings).sheet(key, query.kind, query.filter, figure)
     now = context.clock.utc_now()
     # People's data leave the database, so the copy is recorded for a later erasure.
@@ -86,13 +82,13 @@ def get_figure_rows(
 
 @router.get("/studies/{key}/statistics", response_model=StatisticsView)
 def get_statistics(
-    key: str, db: Reading, context: Context, _: SignedIn, kind: DashboardKind = "people"
+    key: str, context: Context, _: SignedIn, kind: DashboardKind = "people"
 ) -> Response:
     """Return the results of the study's tests on valid sessions; repeat while they are not current.
 
     There is no filter, so that what is tested cannot be chosen after seeing the data.
     """
-    return _answer(*context.part(Drawings).statistics(db, key, kind))
+    return _answer(*context.part(Drawings).statistics(key, kind))
 
 
 @router.get("/studies/{key}/codebook")

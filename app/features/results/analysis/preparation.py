@@ -123,7 +123,7 @@ class FigurePreparation(Part):
             with self.database.reading() as db:
                 if self._stop.is_set() or _is_busy(db):
                     return False
-                making = self.drawings.prepare(db, request)
+            making = self.drawings.prepare(request)
             # If it fails, `Drawings` has logged it, and whoever asks for it is told.
             while making is not None and not making.done() and not self._stop.is_set():
                 wait([making], LOOK_EVERY_S)

@@ -28,7 +28,7 @@ from tests.science.alignment.rooms import (
     some_room,
 )
 from tests.support.beside import beside
-from tests.support.datagrams import HERE, free_udp_port, sender
+from tests.support.datagrams import HERE, free_udp_port, sender, taken_port
 
 SECONDS = 60.0
 
@@ -139,6 +139,10 @@ def test_trackers_reach_the_headset_and_are_on_the_record(site: Site) -> None:
     door = {"is_open": False, "interface": HERE, "port": port}
     ok(site.operator.put("/api/trackers/doors/json", json=door))
     assert check_of(site, session_id)["code"] == "lab_trackers.door_closed"
+    with taken_port(port):
+        ok(site.operator.put("/api/trackers/doors/json", json=door | {"is_open": True}))
+        assert check_of(site, session_id)["code"] == "lab_trackers.door_failed"
+    ok(site.operator.put("/api/trackers/doors/json", json=door))
     ok(site.operator.put("/api/trackers/doors/json", json=door | {"is_open": True}))
     token, room = site.token(session_id), SimulatedRoom(port)
     with (

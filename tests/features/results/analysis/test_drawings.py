@@ -42,7 +42,7 @@ class ThreadedWorker(Worker):
 @pytest.mark.one_engine
 def test_a_waiting_request_gets_its_drawing(database: Database) -> None:
     """A request that waits for a drawing gets it, even if it is cached only later."""
-    drawings = Drawings(str(database.engine.url), lambda: NOW, _worker=ThreadedWorker())
-    with database.reading() as db:
-        drawn, current = drawings.dashboard(db, STUDY, "people")
+    url = str(database.engine.url)
+    drawings = Drawings(database, url, lambda: NOW, _worker=ThreadedWorker())
+    drawn, current = drawings.dashboard(STUDY, "people")
     assert (drawn.body, current) == (b"{}", True)

@@ -1,11 +1,16 @@
 """Workers that stand for the processes that draw, within the process of a test."""
 
+import threading
 from collections.abc import Callable
 from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from typing import Any
 
 from app.platform.workers import Worker
+
+WITHIN_S = 10.0
+"""How long the results of a process that was ended may take to be dealt with."""
 
 
 @dataclass
@@ -41,5 +46,27 @@ class HeldWorker(Worker):
         self.held.append(Future())
         return self.held[-1]
 
-    def end(self) -> None:
+    def let_go(self) -> Callable[[], None]:
         """Leave the tasks undone, as if each had just been finished."""
+        return lambda: None
+
+
+@dataclass
+class KilledWorker(HeldWorker):
+    """A worker whose tasks fail in another thread when it is ended, as those of a process do."""
+
+    is_ended: bool = False
+
+    def let_go(self) -> Callable[[], None]:
+        """Return what lets the tasks fail and waits until their callbacks have run."""
+        return self._fail_all
+
+    def _fail_all(self) -> None:
+        failing = threading.Thread(target=self._fail, daemon=True)
+        failing.start()
+        failing.join(WITHIN_S)
+        self.is_ended = not failing.is_alive()
+
+    def _fail(self) -> None:
+        for one in self.held:
+            one.set_exception(BrokenProcessPool())

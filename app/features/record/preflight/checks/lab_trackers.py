@@ -20,9 +20,9 @@ def _lab_trackers(situation: Situation) -> Found:
     if doubled := link.doubled(now_s):
         return Found("two_on_limb", details=tuple(sorted(chain(*doubled.values()))))
     status = link.status(now_s)
-    doors = situation.context.part(LiveTracking)
-    if status in ("no_reference", "silent") and not doors.is_open(link.door):
-        return Found("door_closed", details=name)
+    door = situation.context.part(LiveTracking).state_of(link.door)
+    if status in ("no_reference", "silent") and door in (None, "failed"):
+        return Found("door_closed" if door is None else "door_failed", details=name)
     step = link.step()
     if status != "aligned" or step is None or step.watched.alignment is None:
         return Found(status, details=name)
@@ -80,6 +80,18 @@ LAB_TRACKERS = StateCheck(
             remedy=Words(
                 en="Open it on the page Trackers.",
                 de="Öffnen Sie sie auf der Seite Tracker.",
+            ),
+        ),
+        Finding(
+            "door_failed",
+            "fail",
+            Words(
+                en="The door of the trackers cannot be opened",
+                de="Die Tür der Tracker lässt sich nicht öffnen",
+            ),
+            remedy=Words(
+                en="The page Trackers says why: often another program uses its port.",
+                de="Die Seite Tracker sagt, warum: oft verwendet ein anderes Programm den Port.",
             ),
         ),
         Finding(

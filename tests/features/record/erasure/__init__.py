@@ -1,0 +1,1 @@
+"""Tests of what an erasure leaves in the database's files."""
