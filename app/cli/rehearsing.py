@@ -21,7 +21,6 @@ import numpy as np
 from httpx2 import Client, HTTPError
 
 from app.protocol import BOX_KINDS, COUNTED_KINDS, STEP_KINDS, UNCOUNTED_KINDS
-from app.rehearsal.body import make_person
 from app.rehearsal.headset import WITHDRAWN
 from app.rehearsal.rehearse import (
     RehearsalPlan,
@@ -31,6 +30,7 @@ from app.rehearsal.rehearse import (
     store_template,
     visit_of,
 )
+from app.simulated_people.body import make_person
 
 T = TypeVar("T")
 START_TIMEOUT_S = 60.0

@@ -5,8 +5,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from app.rehearsal.body import Person
 from app.science.simulation import Aspect, SimulatedItem, simulated_answers
+from app.simulated_people.body import Person
 
 OPEN_PROMPT = "Simulated answer of a rehearsal."
 SIGNATURE = "M80 150L120 60L160 150M100 115L145 115M200 150L200 60L260 150L260 60"

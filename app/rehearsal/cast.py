@@ -12,9 +12,9 @@ from httpx2 import AsyncClient
 from app.client import Operator, ServerRefusedError, Tablet, call_with_retry, submit_form
 from app.protocol import STEP_KINDS, TIMED_KINDS
 from app.rehearsal.answers import agreement, fill_in
-from app.rehearsal.body import Person
 from app.rehearsal.headset import WITHDRAWN, Headset
 from app.science.simulation import Aspect
+from app.simulated_people.body import Person
 
 Json = dict[str, Any]
 ENDED = ("completed", "aborted", WITHDRAWN)

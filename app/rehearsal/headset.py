@@ -16,9 +16,7 @@ from numpy.typing import NDArray
 
 from app.client import RoadClient, TelemetryClient, TelemetryError
 from app.protocol import Tasks
-from app.rehearsal.avatars import AvatarSource, CannotChange, DelayedCopy, PhysicsBody, RemoteAvatar
-from app.rehearsal.body import FRAME_RATE_HZ, Person
-from app.rehearsal.goals import goal_of
+from app.rehearsal.avatar_source import AvatarSource
 from app.rehearsal.road_run import CrossingRun
 from app.rehearsal.road_shape import RoadShape
 from app.rehearsal.task_run import BoxRun
@@ -27,6 +25,9 @@ from app.science.rotations import FloatArray
 from app.science.simulation import GoalKind
 from app.science.skeleton import JOINT_NAMES, Pose
 from app.science.tasks import Laterality, Limb, TaskLayout, TaskRules
+from app.simulated_people.avatars import CannotChange, DelayedCopy, PhysicsBody, RemoteAvatar
+from app.simulated_people.body import FRAME_RATE_HZ, Person
+from app.simulated_people.goals import goal_of
 from app.wire import (
     ACTIVE,
     BODY_STREAMS,

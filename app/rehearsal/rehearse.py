@@ -28,11 +28,11 @@ from app.client import (
 )
 from app.protocol import Tasks
 from app.rehearsal.answers import aspects_named
-from app.rehearsal.avatars import FromServer
-from app.rehearsal.body import make_person
+from app.rehearsal.avatar_source import FromServer
 from app.rehearsal.cast import Cast, Interruption, perform
 from app.rehearsal.headset import WITHDRAWN, FrameClock, Headset
 from app.resources import study_configs_dir
+from app.simulated_people.body import make_person
 
 Json = dict[str, Any]
 AVATARS = ("delayed_copy", "physics")

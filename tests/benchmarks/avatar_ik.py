@@ -16,7 +16,6 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from app.rehearsal.body import captured_movement
 from app.science.avatar.body import PARENT_OF
 from app.science.avatar.ik import GOAL_PARTS, Chain, Goals, InverseKinematics
 from app.science.rotations import FloatArray, conjugate, geodesic_angle, multiply
@@ -27,6 +26,7 @@ from app.science.skeleton import (
     forward_kinematics,
     resample,
 )
+from app.simulated_people.body import captured_movement
 from tests.benchmarks.report import Figure, Report
 from tests.science.avatar.ik import bodies
 from tests.science.avatar.ik.vector_files import FOLDER, goals_from, read

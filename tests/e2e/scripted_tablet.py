@@ -7,7 +7,7 @@ import httpx2
 import numpy as np
 
 from app.rehearsal.answers import agreement, fill_in
-from app.rehearsal.body import Person, make_person
+from app.simulated_people.body import Person, make_person
 
 LOOK_EVERY_S = 0.1
 

@@ -12,7 +12,7 @@ from playwright.sync_api import Page, expect
 from sqlalchemy import select
 
 from app.models import ClientReport
-from app.rehearsal.body import make_person
+from app.simulated_people.body import make_person
 from tests.e2e.killing import crash
 from tests.e2e.people import PATIENCE_MS, Experimenter
 from tests.faults.relay import RelayThread, relayed_in_thread

@@ -10,9 +10,9 @@ import numpy as np
 
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
-from app.rehearsal.avatars import FromServer
-from app.rehearsal.body import make_person
+from app.rehearsal.avatar_source import FromServer
 from app.rehearsal.headset import FrameClock, Headset
+from app.simulated_people.body import make_person
 
 
 class Wearer:

@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from app.rehearsal.avatars import no_touches
 from app.rehearsal.timed_run import FreeRun
 from app.science.skeleton import JOINT_NAMES
+from app.simulated_people.avatars import no_touches
 from app.wire import StreamName, decode_batch
 from app.wire.messages import (
     HeadsetState,

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from app.client.telemetry import TelemetryClient
-from app.rehearsal.avatars import PhysicsBody
-from app.rehearsal.body import make_person
 from app.rehearsal.headset import FrameClock, Headset
 from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.rotations import identity
 from app.science.skeleton import Pose, build_skeleton
+from app.simulated_people.avatars import PhysicsBody
+from app.simulated_people.body import make_person
 from tests.protocol.helpers import study
 from tests.rehearsal.orders import InstantServer, order
 from tests.rehearsal.test_headset import AS_FAST_AS_IT_GOES

@@ -6,11 +6,11 @@ from typing import cast
 import numpy as np
 
 from app.client.telemetry import TelemetryClient
-from app.rehearsal.avatars import PhysicsBody
-from app.rehearsal.body import make_person
 from app.rehearsal.headset import FrameClock, Headset
 from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.skeleton import FINGER_PARTS, finger_of
+from app.simulated_people.avatars import PhysicsBody
+from app.simulated_people.body import make_person
 from app.wire.messages import ContactReport
 from tests.protocol.helpers import study
 from tests.rehearsal.orders import InstantServer, order

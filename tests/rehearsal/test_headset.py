@@ -9,8 +9,8 @@ import pytest
 
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
-from app.rehearsal.body import make_person
 from app.rehearsal.headset import FrameClock, Headset
+from app.simulated_people.body import make_person
 from app.wire.messages import CompletionReport, ContactReport, PhaseOrder
 from tests.protocol.helpers import study
 from tests.rehearsal.orders import InstantServer, order

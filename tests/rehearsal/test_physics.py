@@ -17,8 +17,6 @@ from app.client.http import ServerRefusedError, call
 from app.client.telemetry import TelemetryClient
 from app.database import open_database
 from app.models import JointErrorRow
-from app.rehearsal.avatars import PhysicsBody
-from app.rehearsal.body import make_person
 from app.rehearsal.cast import Cast, perform
 from app.rehearsal.headset import FrameClock, Headset
 from app.rehearsal.rehearse import (
@@ -32,6 +30,8 @@ from app.science.avatar.body import FINGER_PARTS, Figure, figure_of
 from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.rotations import identity
 from app.science.skeleton import Pose, build_skeleton
+from app.simulated_people.avatars import PhysicsBody
+from app.simulated_people.body import make_person
 from app.wire.messages import CompletionReport, ContactReport
 from tests.features.lab import Json, ok
 from tests.protocol.helpers import edited, study

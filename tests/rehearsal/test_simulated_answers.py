@@ -8,8 +8,8 @@ import pytest
 
 from app.protocol import load_instrument
 from app.rehearsal.answers import aspects_named, fill_in
-from app.rehearsal.body import make_person
 from app.science.simulation import Aspect, agreement
+from app.simulated_people.body import make_person
 from tests.protocol.helpers import CONFIGS, STUDY, loaded, problems
 
 _PEOPLE = 200

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from app.rehearsal.body import captured_movement
 from app.science import rotations as rot
 from app.science.delay import delayed_pose
 from app.science.latency.achieved_latency import StreamPair
 from app.science.rotations import FloatArray
 from app.science.skeleton import build_skeleton
 from app.science.skeleton.movement import loop, resample
+from app.simulated_people.body import captured_movement
 
 RATE_HZ = 90.0
 HISTORY_S = 2.0

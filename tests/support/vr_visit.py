@@ -18,7 +18,7 @@ import httpx2
 from playwright.sync_api import BrowserContext, Page
 
 from app.protocol import STEP_KINDS
-from app.rehearsal.body import Person
+from app.simulated_people.body import Person
 from tests.e2e.scripted_tablet import ScriptedTablet
 from tests.support.bundle import bundled_script
 

@@ -15,9 +15,9 @@ from typing import Any, Final
 from app.cli.pilot.inputs import StudyFile, of_file, read_study
 from app.features.results.pilot import lowest_p, most_participants
 from app.protocol import ConfigError, StudyProtocol, imbalances, sequences
-from app.rehearsal.walkthrough import Walkthrough, walk_through
 from app.science.delay import LONGEST_DELAY_S
 from app.science.tasks import Laterality
+from app.simulated_people.walkthrough import Walkthrough, walk_through
 
 BODIES: Final = {"the 5th percentile of women": 1.518, "the 95th percentile of men": 1.869}
 """Statures in m: Huston 2009, Principles of Biomechanics; segments have fixed proportions."""

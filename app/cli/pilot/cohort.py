@@ -20,8 +20,14 @@ from app.cli.errors import require_folder_of
 from app.cli.pilot.inputs import StudyFile, is_shipped, read_study
 from app.platform.workers import end_with_parent
 from app.protocol import StudyProtocol
-from app.rehearsal.visits import AvatarKind, PhaseOutcome, Visit, avatar_kind_of, simulate_visit
 from app.science.simulation import Build
+from app.simulated_people.visits import (
+    AvatarKind,
+    PhaseOutcome,
+    Visit,
+    avatar_kind_of,
+    simulate_visit,
+)
 
 FORMAT: Final = 1
 KIND: Final = "cohort"

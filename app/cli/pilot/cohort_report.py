@@ -14,7 +14,7 @@ from app.cli.pilot.cohort import Cohort
 from app.cli.pilot.inputs import StudyFile, has_assumptions
 from app.cli.pilot.run import Curve, PowerOrder, power_of
 from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
-from app.rehearsal.visits import PhaseOutcome, Visit
+from app.simulated_people.visits import PhaseOutcome, Visit
 
 MEASURES: Final = ("completions", "side_contacts", "contact_time_s", "out_of_order")
 PUBLISHED: Final = {45.0: 66.0, 125.0: 61.5, 350.0: 36.0}

@@ -13,9 +13,9 @@ from app.protocol import (
     load_instrument,
     load_study,
 )
-from app.rehearsal.visits import AvatarKind
 from app.resources import study_configs_dir
 from app.science.instruments import Instrument
+from app.simulated_people.visits import AvatarKind
 
 _COUNTS = re.compile(r"\d+(,\d+)*")
 _SHARD = re.compile(r"([1-9]\d*)/([1-9]\d*)")

@@ -183,7 +183,7 @@ def _avatar(
 
 
 def _movement(capture: Path, stature_m: float) -> Movement:
-    from app.rehearsal.body import captured_movement
+    from app.simulated_people.body import captured_movement
 
     return resample(captured_movement(capture, build_skeleton(stature_m)), _RATE_HZ)
 

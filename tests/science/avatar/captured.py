@@ -3,9 +3,9 @@
 from functools import cache
 from pathlib import Path
 
-from app.rehearsal.body import captured_movement, skeleton_motion
 from app.science.retargeting import movement_travelling, propose_joint_map
 from app.science.skeleton import Movement, build_skeleton, resample
+from app.simulated_people.body import captured_movement, skeleton_motion
 
 RATE_HZ = 90.0
 STATURE_M = 1.75

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from app.adapters.captures.reader import read_capture_file
-from app.rehearsal.body import UnusableCapture, captured_movement, make_person
 from app.science import rotations as rot
 from app.science.retargeting.in_place import movement_in_place
 from app.science.retargeting.joint_map import JointMapError
@@ -22,6 +21,7 @@ from app.science.skeleton import (
     loop,
     resample,
 )
+from app.simulated_people.body import UnusableCapture, captured_movement, make_person
 
 
 def _own_capture(movement: Movement) -> RigMotion:

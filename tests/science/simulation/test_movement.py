@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.rehearsal.body import captured_movement
 from app.science import rotations as rot
 from app.science.delay import DelayBuffer
 from app.science.simulation import (
@@ -23,6 +22,7 @@ from app.science.skeleton import (
     loop,
     resample,
 )
+from app.simulated_people.body import captured_movement
 from tests.science.simulation.people import (
     BOXES,
     IMPATIENT,

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from app.rehearsal.body import captured_movement
 from app.science import rotations as rot
 from app.science.skeleton import JOINT_COUNT, loop, resample
+from app.simulated_people.body import captured_movement
 from tests.science.simulation.people import (
     BOXES,
     RATE_HZ,

@@ -1,6 +1,6 @@
 /**
  * The remote body of a study with a delayed copy: the participant's own movement, delayed in every
- * joint but the hips. The server's `app/rehearsal/avatars.DelayedCopy`.
+ * joint but the hips. The server's `app/simulated_people/avatars.DelayedCopy`.
  */
 import { FINGER_PARTS, JOINTS } from "@shared/avatar/anatomy.generated";
 import { DelayBuffer } from "@shared/avatar/physics/delayBuffer";

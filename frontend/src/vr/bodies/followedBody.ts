@@ -1,4 +1,4 @@
-/** The remote body of a physics avatar: the server's `app/rehearsal/avatars.PhysicsBody`. */
+/** The remote body of a physics avatar: the server's `app/simulated_people/avatars.PhysicsBody`. */
 import { FINGER_PARTS, JOINTS } from "@shared/avatar/anatomy.generated";
 import type { Mujoco } from "@shared/avatar/mujoco";
 import { Follower } from "@shared/avatar/physics/follower";

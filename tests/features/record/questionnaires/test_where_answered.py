@@ -6,7 +6,7 @@ from fastapi.testclient import TestClient
 
 from app.protocol import compile_plan
 from app.rehearsal.answers import fill_in
-from app.rehearsal.body import make_person
+from app.simulated_people.body import make_person
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.record.questionnaires.forms import ANSWERS, FORM, filled, send
 from tests.protocol.helpers import STUDY, edited, loaded

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from app.features.record.telemetry.encodings.columns import Columns
-from app.rehearsal.body import FRAME_RATE_HZ
-from app.rehearsal.body import captured_movement as on_skeleton
 from app.science.avatar.targets import finger_rotations
 from app.science.rotations import normalise
 from app.science.simulation import SimulatedFingers, gesture_angles
 from app.science.skeleton import Movement, build_skeleton, continuous, resample
+from app.simulated_people.body import FRAME_RATE_HZ
+from app.simulated_people.body import captured_movement as on_skeleton
 
 RATE_HZ = FRAME_RATE_HZ
 LATENCY_S = 0.125

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.rehearsal.body import captured_movement
 from app.science.avatar.ik import GOAL_PARTS, Goals, InverseKinematics
 from app.science.avatar.ik.chain import Chain
 from app.science.rotations import FloatArray
 from app.science.skeleton import JOINT_INDEX, build_skeleton, forward_kinematics, resample
+from app.simulated_people.body import captured_movement
 from tests.science.avatar.ik import bodies
 
 RATE_HZ = 90.0

@@ -1,7 +1,7 @@
 """Make `tests/vectors/avatar/followed.json`, which holds the headset's remote body to Python's.
 
 `python -m tests.science.avatar.simulation.followed_vectors` writes it: the same participant gives
-the same body and touches as in the scripted headset (`app.rehearsal.avatars.PhysicsBody`).
+the same body and touches as in the scripted headset (`app.simulated_people.avatars.PhysicsBody`).
 `tests/vectors/avatar/README.md` describes the file.
 """
 
@@ -15,7 +15,6 @@ import mujoco
 import numpy as np
 
 from app.protocol.avatar import AvatarFile, configuration_of, file_of
-from app.rehearsal.avatars import PhysicsBody
 from app.science.avatar.body import AXIS_NAMES
 from app.science.avatar.ik import Chain
 from app.science.avatar.mjcf.gains import default_configuration
@@ -23,6 +22,7 @@ from app.science.avatar.targets.targets import finger_rotations, joint_rotations
 from app.science.rotations import FloatArray, from_rotation_vector, q_blend
 from app.science.skeleton import FINGER_PARTS, Pose
 from app.science.tasks import TaskLayout
+from app.simulated_people.avatars import PhysicsBody
 from app.wire import AvatarOrder
 from tests.science.avatar.ik import bodies
 

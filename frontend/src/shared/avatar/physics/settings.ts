@@ -1,6 +1,6 @@
 /**
  * An avatar's configuration as the server sends it, and the settings in force of one that runs: the
- * server's `app/science/avatar/configuration` and `app/rehearsal/avatars.ordered_settings`.
+ * server's `app/science/avatar/configuration` and `app/simulated_people/avatars.ordered_settings`.
  */
 import { AXES, COLLIDING, GROUPS, PARTS } from "../anatomy.generated";
 

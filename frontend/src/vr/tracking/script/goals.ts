@@ -1,6 +1,6 @@
 /**
  * What a scripted person does about the surface that the task's rules expect next: the server's
- * `app/rehearsal/goals.py`.
+ * `app/simulated_people/goals.py`.
  */
 import type { Vector } from "@shared/rotations";
 import type { ScriptedGoal } from "./movements";

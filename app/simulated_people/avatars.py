@@ -1,17 +1,13 @@
-"""The remote avatar of the scripted headset: a delayed copy, or a body that follows by forces."""
+"""The remote avatar of a simulated person: a delayed copy, or a body that follows by forces."""
 
-import asyncio
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol, cast
 
 import mujoco
 import numpy as np
-from httpx2 import AsyncClient
 from numpy.typing import NDArray
 
-from app.client import Json, call_with_retry
-from app.protocol.avatar import AvatarFile, configuration_of
 from app.science.avatar.configuration import (
     Configuration,
     RunningSettings,
@@ -33,7 +29,6 @@ from app.science.skeleton import (
     Skeleton,
     WorldPose,
     body_part_segments,
-    build_skeleton,
     forward_kinematics,
 )
 from app.science.tasks import SurfaceArrays, TaskLayout, touching_and_near
@@ -163,43 +158,6 @@ def no_touches(parts: Sequence[str]) -> tuple[Bools, Bools]:
     """Return empty touches of these parts, as when there are no boxes."""
     nothing = np.zeros((0, len(parts)), dtype=np.bool_)
     return nothing, nothing
-
-
-class AvatarSource(Protocol):
-    """A source of the physics avatar of a session."""
-
-    async def request_avatar(self, stature_m: float, body: str | None = None) -> "PhysicsBody":
-        """Return the avatar for a participant of this stature, with the body of this name.
-
-        Without a name it has the body of the avatar's configuration.
-        """
-
-
-@dataclass(frozen=True)
-class FromServer:
-    """The avatar that the server builds and records.
-
-    `http` sends as the session's paired headset. `with_fingers`: the participant's are given.
-    """
-
-    http: AsyncClient
-    with_fingers: bool = False
-
-    async def request_avatar(self, stature_m: float, body: str | None = None) -> "PhysicsBody":
-        """Return the avatar for a participant of this stature, with the body of this name.
-
-        Raises the errors of `call_with_retry`.
-        """
-        answer: Json = await call_with_retry(
-            self.http, "POST", "/api/vr/avatar", {"stature_m": stature_m, "body": body}
-        )
-        configuration = configuration_of(AvatarFile.model_validate(answer["configuration"]))
-        # Loading the model and the compiled code takes a second or two.
-        own_m = build_skeleton(stature_m).standing_hips_m
-        scale = answer["standing_hips_m"] / own_m
-        return await asyncio.to_thread(
-            PhysicsBody, answer["mjcf"], configuration, scale, with_fingers=self.with_fingers
-        )
 
 
 class PhysicsBody:

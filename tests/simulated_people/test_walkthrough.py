@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from app.rehearsal.walkthrough import SLOW, walk_through
 from app.science.delay import LONGEST_DELAY_S, DelayError
 from app.science.tasks import Laterality
+from app.simulated_people.walkthrough import SLOW, walk_through
 from tests.protocol.helpers import study
 
 

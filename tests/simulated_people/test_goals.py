@@ -1,6 +1,5 @@
 """Tests of the movement goals that a scripted participant derives from the task rules."""
 
-from app.rehearsal.goals import goal_of
 from app.science.simulation import GoalKind
 from app.science.tasks import (
     Command,
@@ -12,6 +11,7 @@ from app.science.tasks import (
     TaskState,
     advance,
 )
+from app.simulated_people.goals import goal_of
 from tests.protocol.helpers import study
 
 RIGHT = Laterality.RIGHT

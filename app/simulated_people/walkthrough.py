@@ -12,8 +12,6 @@ from typing import Final
 
 import numpy as np
 
-from app.rehearsal.avatars import DelayedCopy
-from app.rehearsal.goals import goal_of
 from app.science.simulation import MovementTraits, SimulatedParticipant, idle_movement
 from app.science.skeleton import build_skeleton
 from app.science.tasks import (
@@ -27,6 +25,8 @@ from app.science.tasks import (
     TaskRun,
     current_goal,
 )
+from app.simulated_people.avatars import DelayedCopy
+from app.simulated_people.goals import goal_of
 
 RATE_HZ: Final = 45.0
 STALLED_S: Final = 15.0

@@ -15,9 +15,6 @@ from typing import Final, Literal
 import numpy as np
 
 from app.protocol import Step, StudyProtocol, compile_plan, ledger_block, sequences
-from app.rehearsal.avatars import DelayedCopy, PhysicsBody, RemoteAvatar
-from app.rehearsal.body import FRAME_RATE_HZ, Person, make_person
-from app.rehearsal.goals import goal_of
 from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.simulation import Build, Goal
 from app.science.tasks import (
@@ -29,6 +26,9 @@ from app.science.tasks import (
     TaskRules,
     TaskRun,
 )
+from app.simulated_people.avatars import DelayedCopy, PhysicsBody, RemoteAvatar
+from app.simulated_people.body import FRAME_RATE_HZ, Person, make_person
+from app.simulated_people.goals import goal_of
 
 AvatarKind = Literal["physics", "delayed_copy"]
 SETTLING_S: Final = 1.0
