@@ -8,7 +8,7 @@ so it does not matter where, in which order and beside whom they are simulated.
 Latency is set on the avatar and nowhere else: the person is not told (`science.simulation.vision`).
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -91,7 +91,17 @@ def avatar_kind_of(study: StudyProtocol) -> AvatarKind:
     return "physics" if study.avatar == "physics" else "delayed_copy"
 
 
-def simulate_visit(study: StudyProtocol, number: int, seed: int, kind: AvatarKind) -> Visit:
+def no_pause() -> None:
+    """Go on at once."""
+
+
+def simulate_visit(
+    study: StudyProtocol,
+    number: int,
+    seed: int,
+    kind: AvatarKind,
+    pause: Callable[[], None] = no_pause,
+) -> Visit:
     """Simulate the task phases of one person.
 
     Args:
@@ -101,13 +111,14 @@ def simulate_visit(study: StudyProtocol, number: int, seed: int, kind: AvatarKin
         seed: of the cohort.
         kind: `physics`: the standard avatar with simple shapes (its version 1) in the person's
             stature, touched by real contacts. `delayed_copy`: a copy that passes through boxes.
+        pause: called between frames, for who has to wait while others need the processor.
     """
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
     person = make_person(rng, None)
     length = len(sequences(study))
     order = ledger_block(study, number // length)[number % length].sequence
     steps = [step for step in compile_plan(study, order) if step.kind == "task"]
-    room = _Room(study, person, kind)
+    room = _Room(study, person, kind, pause)
     phases: list[PhaseOutcome] = []
     failure = None
     for step in steps:
@@ -122,7 +133,13 @@ def simulate_visit(study: StudyProtocol, number: int, seed: int, kind: AvatarKin
 class _Room:
     """One person with their avatar, on a clock that runs frame by frame."""
 
-    def __init__(self, study: StudyProtocol, person: Person, kind: AvatarKind) -> None:
+    def __init__(
+        self,
+        study: StudyProtocol,
+        person: Person,
+        kind: AvatarKind,
+        pause: Callable[[], None],
+    ) -> None:
         self._layouts: Mapping[Limb, TaskLayout] = study.tasks.layouts()
         self._person, self._solid = person, kind == "physics"
         self._avatar: RemoteAvatar = (
@@ -130,7 +147,7 @@ class _Room:
             if kind == "physics"
             else DelayedCopy(person.skeleton)
         )
-        self._frame = 0
+        self._frame, self._pause = 0, pause
 
     @property
     def t_s(self) -> float:
@@ -163,6 +180,7 @@ class _Room:
         return _outcome(step, run, elapsed_s=self.t_s - start_s)
 
     def _draw(self, goal: Goal | None) -> None:
+        self._pause()
         self._frame += 1
         t_s, person = self.t_s, self._person.participant
         self._avatar.frame(t_s, person.pose(t_s, goal))

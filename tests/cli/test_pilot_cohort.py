@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from app.cli.pilot.cohort import Cohort, CohortOrder, carry_out_cohort
+from app.cli.pilot.cohort import CohortOptions, carry_out_cohort
+from app.features.results.pilot.simulation import Cohort, CohortOrder, Sharing
 from tests.cli.invoked import Invoked
 from tests.protocol.helpers import CONFIGS
 
@@ -37,10 +38,8 @@ def _simulated(
     study: Path, out: Path, *, workers: int = 1, shard: tuple[int, int] = (0, 1)
 ) -> Cohort:
     """Simulate the same cohort, or a part of it, without a report."""
-    order = CohortOrder(
-        study=str(study), participants=3, seed=5, workers=workers, shard=shard, out=out, avatar=None
-    )
-    return carry_out_cohort(order, lambda _: None)[1]
+    options = CohortOptions(str(study), CohortOrder(3, 5), Sharing(workers, shard), out)
+    return carry_out_cohort(options, lambda _: None)[1]
 
 
 def _without_machine(report: dict[str, Any]) -> dict[str, Any]:

@@ -1,129 +1,69 @@
-"""Run `reembody pilot STUDY`: simulate the visits of a cohort, in one process or in several.
+"""Run `reembody pilot STUDY` and put its shards together: the study's files, and the report."""
 
-Every visit follows from the seed and its number alone, so the record is the same bytes however the
-work is shared out: its lines stand in the order of the visits' numbers, and a shard has its own.
-Times of the machine are not part of it.
-"""
-
-import hashlib
 import json
-import multiprocessing
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from app.cli.errors import require_folder_of
-from app.cli.pilot.inputs import StudyFile, is_shipped, read_study
-from app.platform.workers import end_with_parent
-from app.protocol import StudyProtocol
-from app.science.simulation import Build
-from app.simulated_people.visits import (
-    AvatarKind,
-    PhaseOutcome,
-    Visit,
-    avatar_kind_of,
-    simulate_visit,
+from app.cli.pilot.inputs import (
+    StudyFile,
+    has_assumptions,
+    is_shipped,
+    read_assumptions,
+    read_study,
+    require_sharing,
+)
+from app.cli.pilot.output import told
+from app.features.results.pilot.simulation import (
+    PUBLISHED,
+    Cohort,
+    CohortOrder,
+    CohortReport,
+    PowerOrder,
+    Sharing,
+    check_study,
+    failures_of,
+    paragraphs,
+    reach_sentence,
+    report_data,
+    report_on,
+    simulate_cohort,
+    simulate_power,
 )
 
-FORMAT: Final = 1
-KIND: Final = "cohort"
 MOST_PARTICIPANTS: Final = 10_000
-Header = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class CohortOrder:
-    """The options of `pilot STUDY`; `shard` is the number of this part, from 0, and of all."""
+class CohortOptions:
+    """The options of `pilot STUDY`."""
 
     study: str
-    participants: int
-    seed: int
-    workers: int
-    shard: tuple[int, int]
+    order: CohortOrder
+    sharing: Sharing
     out: Path | None
-    avatar: AvatarKind | None
 
 
-@dataclass(frozen=True)
-class Cohort:
-    """The visits that were simulated, in the order of their numbers.
-
-    `real_time_factor`: seconds of simulated people for each second of this run's processor time;
-    None if nothing was left to compute. `unfinished`: visits of other shards that are not here.
-    """
-
-    header: Header
-    visits: tuple[Visit, ...]
-    real_time_factor: float | None
-
-    @property
-    def unfinished(self) -> int:
-        """The number of visits that are not simulated yet."""
-        return int(self.header["participants"]) - len(self.visits)
-
-    @property
-    def sha256(self) -> str:
-        """The SHA-256 of the header and of all visits, as the record has them."""
-        lines = [self.header, *map(asdict, self.visits)]
-        return hashlib.sha256("".join(map(_line, lines)).encode()).hexdigest()
-
-
-def carry_out_cohort(order: CohortOrder, now: Callable[[str], None]) -> tuple[StudyFile, Cohort]:
+def carry_out_cohort(
+    options: CohortOptions, now: Callable[[str], None]
+) -> tuple[StudyFile, Cohort]:
     """Simulate a cohort; `now` is told how far it is.
 
     Raises ValueError if the input does not allow it, OSError if the record cannot be written.
     """
-    _check(order)
-    require_folder_of(order.out)
-    file = read_study(order.study)
-    study = file.study.protocol
-    kind = order.avatar or avatar_kind_of(study)
-    header = {
-        "format": FORMAT,
-        "kind": KIND,
-        "simulated": True,
-        "study": study.key,
-        "study_sha256": file.study.content_hash,
-        "participants": order.participants,
-        "seed": order.seed,
-        "avatar": kind,
-    }
-    part, parts = order.shard
-    own = range(part, order.participants, parts)
-    done = [] if order.out is None else _continued(order.out, header, own)
-    missing = own[len(done) :]
-    processor_s = 0.0
-    now(f"simulating {study.key}: {len(done)} of {len(own)} people")
-    with _computing(order.workers, study, order.seed, kind) as compute:
-        for visit, used_s in compute(missing):
-            done.append(visit)
-            processor_s += used_s
-            if order.out is not None:
-                with order.out.open("a", encoding="utf-8") as record:
-                    record.write(_line(asdict(visit)))
-            now(f"simulating {study.key}: {len(done)} of {len(own)} people")
-    simulated_s = sum(visit.simulated_s for visit in done[len(done) - len(missing) :])
-    factor = simulated_s / processor_s if missing else None
-    return file, Cohort(header, tuple(done), factor)
-
-
-def merged_cohort(paths: Sequence[Path]) -> Cohort:
-    """Put the records of one cohort together; raises ValueError, OSError."""
-    visits: dict[int, Visit] = {}
-    first: Header | None = None
-    for path in paths:
-        header, own, _ = _read(path)
-        if first is None:
-            first = header
-        _require_same(first, header, path)
-        visits.update({visit.number: visit for visit in own})
-    if first is None:
-        raise ValueError("give the records to merge, as --out wrote them")
-    return Cohort(first, tuple(visits[number] for number in sorted(visits)), None)
+    _check(options)
+    require_folder_of(options.out)
+    file = read_study(options.study)
+    people = simulate_cohort(
+        file,
+        options.order,
+        told(file.study.protocol.key, now),
+        record=options.out,
+        sharing=options.sharing,
+    )
+    return file, people
 
 
 def study_of(cohort: Cohort, given: str | None) -> StudyFile:
@@ -142,117 +82,84 @@ def study_of(cohort: Cohort, given: str | None) -> StudyFile:
     return file
 
 
-def is_cohort(path: Path) -> bool:
-    """Return whether a file is the record of a cohort, by its first line; raises OSError."""
-    with path.open("rb") as file:
-        line = file.readline(10_000)
-    try:
-        header = json.loads(line)
-    except ValueError:
-        return False
-    return isinstance(header, dict) and header.get("kind") == KIND
+def full_report(
+    file: StudyFile,
+    cohort: Cohort,
+    assumptions: Path | None,
+    workers: int,
+    now: Callable[[str], None],
+) -> CohortReport:
+    """Check the study, simulate its power if anything is assumed of answers, and report.
+
+    Raises the errors of `simulate_power`.
+    """
+    tell = told(file.study.protocol.key, now)
+    checked = check_study(file, tell)
+    curve = None
+    if has_assumptions(assumptions, file):
+        loaded = read_assumptions(assumptions, file)
+        order = PowerOrder(seed=int(cohort.header["seed"]))
+        curve = simulate_power(file, loaded, order, tell, sharing=Sharing(workers))
+    return report_on(file, cohort, checked, curve)
 
 
-def _check(order: CohortOrder) -> None:
+def report_json(report: CohortReport) -> str:
+    """Return the report for scripts."""
+    return json.dumps(report_data(report), indent=2)
+
+
+def report_text(report: CohortReport) -> str:
+    """Describe the report."""
+    return "\n".join(_lines(report))
+
+
+def _lines(report: CohortReport) -> Iterator[str]:
+    cohort = report.cohort
+    header = cohort.header
+    yield (
+        f"SIMULATED: {len(cohort.visits)} of {header['participants']} people in "
+        f"{header['study']}, {header['avatar']}, seed {header['seed']}"
+    )
+    yield f"sha256 {cohort.sha256}; visits that could not be completed: {failures_of(cohort)}"
+    if cohort.real_time_factor is not None:
+        yield f"{cohort.real_time_factor:.1f} s of visits for each second of processor time"
+    for visit in cohort.visits:
+        if visit.failure is not None:
+            yield f"  person {visit.number}: {visit.failure}"
+    yield ""
+    yield (
+        "limb  latency  people  tasks (SD)    of lowest  sides  red, s  early  walks back, s  none"
+    )
+    for one in report.cells:
+        share = "-" if one.share_of_lowest is None else f"{100 * one.share_of_lowest:.0f} %"
+        yield (
+            f"{one.limb:4} {one.latency_ms:5.0f} ms {one.people:7d}  {one.completions:5.2f} "
+            f"({one.completions_sd:4.2f}) {share:>11} {one.side_contacts:6.1f} "
+            f"{one.contact_time_s:7.1f} {one.out_of_order:6.2f} {one.walk_back_s:14.1f} "
+            f"{100 * one.at_floor:4.0f} %"
+        )
+    shares = ", ".join(f"{share:g} % at {ms:g} ms" for ms, share in PUBLISHED.items())
+    yield f"Published, end to end (Waltemate et al. 2016, another task): {shares}."
+    if report.changes:
+        yield ""
+        yield "Paired change from the lowest to the highest latency, 95 % t interval:"
+    for change in report.changes:
+        yield (
+            f"  {change.limb} {change.measure}: {change.mean:+.2f} "
+            f"[{change.low:+.2f}, {change.high:+.2f}], n = {change.people}"
+        )
+    yield ""
+    yield reach_sentence(report)
+    for found in report.findings:
+        yield f"  {found.path}: {found.message}"
+    for text in paragraphs(report).values():
+        yield from ("", text)
+
+
+def _check(options: CohortOptions) -> None:
+    order, sharing = options.order, options.sharing
     if not 1 <= order.participants <= MOST_PARTICIPANTS:
         raise ValueError(f"--participants {order.participants}: 1 to {MOST_PARTICIPANTS} are valid")
-    if not 1 <= order.workers <= 64:
-        raise ValueError(f"--workers {order.workers}: 1 to 64 are valid")
+    require_sharing(sharing, options.out)
     if order.seed < 0:
         raise ValueError(f"--seed {order.seed}: give 0 or a greater number")
-    if order.shard[1] > 1 and order.out is None:
-        raise ValueError("--shard needs --out, the file whose parts `pilot merge` puts together")
-
-
-def _continued(path: Path, header: Header, own: Sequence[int]) -> list[Visit]:
-    """Return the visits that a record has, and begin it if there is none."""
-    if path.exists() and path.stat().st_size:
-        found, visits, length = _read(path)
-        _require_same(header, found, path)
-        if [visit.number for visit in visits] != list(own[: len(visits)]):
-            raise ValueError(f"{path} is another shard of this cohort; give each a file of its own")
-        # What a killed process had begun to write.
-        with path.open("r+b") as file:
-            file.truncate(length)
-        return visits
-    # Renamed when it is whole, so that a record never begins in the middle.
-    begun = path.with_name(f"{path.name}.begun")
-    begun.write_text(_line(header), encoding="utf-8")
-    begun.replace(path)
-    return []
-
-
-def _line(one: Mapping[str, Any]) -> str:
-    return f"{json.dumps(one)}\n"
-
-
-def _read(path: Path) -> tuple[Header, list[Visit], int]:
-    """Return header and visits of a record, and how many of its bytes are complete lines."""
-    whole, _, _ = path.read_bytes().rpartition(b"\n")
-    lines = whole.decode("utf-8", errors="replace").split("\n")
-    try:
-        header = json.loads(lines[0])
-        known = isinstance(header, dict) and header.get("kind") == KIND
-        known = known and header.get("format") == FORMAT
-        visits = [_visit(json.loads(line)) for line in lines[1:]] if known else []
-    except (ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{path} is no record of a cohort: {error}") from error
-    if not known:
-        raise ValueError(f"{path} is no record of a cohort; give a file that --out wrote")
-    return header, visits, len(whole) + 1
-
-
-def _visit(one: dict[str, Any]) -> Visit:
-    phases = tuple(PhaseOutcome(**phase) for phase in one["phases"])
-    changed = {"build": Build(**one["build"]), "order": tuple(one["order"]), "phases": phases}
-    return Visit(**{**one, **changed})
-
-
-def _require_same(header: Header, found: Header, path: Path) -> None:
-    differing = sorted(key for key in {*header, *found} if header.get(key) != found.get(key))
-    if differing:
-        raise ValueError(
-            f"{path} is of another cohort: it differs in {', '.join(differing)}. Use the same "
-            "study, seed, avatar and number, or another file"
-        )
-
-
-_Compute = Callable[[Sequence[int]], Iterator[tuple[Visit, float]]]
-
-
-@contextmanager
-def _computing(
-    workers: int, study: StudyProtocol, seed: int, kind: AvatarKind
-) -> Iterator[_Compute]:
-    if workers == 1:
-        _begin(study, seed, kind, in_own_process=False)
-        yield lambda numbers: map(_compute, numbers)
-        return
-    # Spawned, because a fork would copy the threads of the progress display half.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(
-        workers, mp_context=context, initializer=_begin, initargs=(study, seed, kind)
-    ) as pool:
-        yield lambda numbers: pool.map(_compute, numbers)
-        pool.shutdown(cancel_futures=True)
-
-
-_own: tuple[StudyProtocol, int, AvatarKind] | None = None
-
-
-def _begin(
-    study: StudyProtocol, seed: int, kind: AvatarKind, *, in_own_process: bool = True
-) -> None:
-    global _own
-    if in_own_process:
-        end_with_parent()
-    _own = (study, seed, kind)
-
-
-def _compute(number: int) -> tuple[Visit, float]:
-    """Simulate one visit; return it with the processor time that it took."""
-    assert _own is not None  # noqa: S101 - set before the first visit
-    study, seed, kind = _own
-    began_s = time.process_time()
-    visit = simulate_visit(study, number, seed, kind)
-    return visit, time.process_time() - began_s

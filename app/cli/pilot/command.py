@@ -53,24 +53,27 @@ def cohort(
     as_json: _Json = False,
 ) -> None:
     """Simulate whole visits: reach, completions, contacts, length, storage and power."""
-    from app.cli.pilot.cohort import CohortOrder, carry_out_cohort
-    from app.cli.pilot.cohort_report import full_report, report_json, report_text
+    from app.cli.pilot.cohort import (
+        CohortOptions,
+        carry_out_cohort,
+        full_report,
+        report_json,
+        report_text,
+    )
     from app.cli.pilot.inputs import read_assumptions, read_avatar, read_shard, read_study
+    from app.features.results.pilot.simulation import CohortOrder, Sharing
 
     with reported(ValueError, OSError), Activity(f"simulating {study}: reading it") as now:
-        order = CohortOrder(
+        options = CohortOptions(
             study=study,
-            participants=participants,
-            seed=seed,
-            workers=workers,
-            shard=read_shard(shard),
+            order=CohortOrder(participants, seed, read_avatar(avatar)),
+            sharing=Sharing(workers, read_shard(shard)),
             out=out,
-            avatar=read_avatar(avatar),
         )
         if assumptions is not None:
             # A mistake in this file is reported before the work, not after it.
             read_assumptions(assumptions, read_study(study))
-        file, people = carry_out_cohort(order, now.now)
+        file, people = carry_out_cohort(options, now.now)
         report = full_report(file, people, assumptions, workers, now.now)
     print(report_json(report) if as_json else report_text(report))
 
@@ -103,23 +106,19 @@ def power(
     """Simulate data sets, and count how often the preregistered test is significant."""
     from app.cli.pilot import output as texts
     from app.cli.pilot.inputs import read_counts, read_shard
-    from app.cli.pilot.run import PowerOrder, carry_out_power
-    from app.cli.pilot.run import as_json as json_of
+    from app.cli.pilot.run import PowerOptions, carry_out_power
+    from app.features.results.pilot.simulation import PowerOrder, Sharing, curve_json
 
     with reported(ValueError, OSError), Activity(f"simulating {study}: reading it") as now:
-        order = PowerOrder(
+        options = PowerOptions(
             study=study,
             assumptions=assumptions,
-            participants=read_counts(participants or []),
-            seed=seed,
-            sets=sets,
-            target=target,
-            workers=workers,
-            shard=read_shard(shard),
+            order=PowerOrder(read_counts(participants or []), seed, sets, target),
+            sharing=Sharing(workers, read_shard(shard)),
             out=out,
         )
-        curve = carry_out_power(order, now.now)
-    print(json_of(curve) if as_json else texts.curve_text(curve))
+        curve = carry_out_power(options, now.now)
+    print(curve_json(curve) if as_json else texts.curve_text(curve))
     own = os.times()
     used_s = own.user + own.system + own.children_user + own.children_system
     print(f"reembody: {used_s:.0f} s of processor time", file=sys.stderr)
@@ -156,10 +155,13 @@ def merge(
 ) -> None:
     """Put the parts of a simulation together, wherever they were computed."""
     from app.cli.pilot import output as texts
-    from app.cli.pilot.cohort import is_cohort, merged_cohort, study_of
-    from app.cli.pilot.cohort_report import full_report, report_json, report_text
-    from app.cli.pilot.run import as_json as json_of
-    from app.cli.pilot.run import carry_out_merge
+    from app.cli.pilot.cohort import full_report, report_json, report_text, study_of
+    from app.features.results.pilot.simulation import (
+        curve_json,
+        is_cohort,
+        merged_cohort,
+        merged_curve,
+    )
 
     with reported(ValueError, OSError), Activity("putting records together") as now:
         if is_cohort(records[0]):
@@ -168,5 +170,5 @@ def merge(
             report = full_report(file, people, assumptions, 1, now.now)
             print(report_json(report) if as_json else report_text(report))
             return
-        curve = carry_out_merge(records)
-    print(json_of(curve) if as_json else texts.curve_text(curve))
+        curve = merged_curve(records)
+    print(curve_json(curve) if as_json else texts.curve_text(curve))

@@ -4,30 +4,27 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.features.results.pilot.simulation import AvatarKind, PilotStudy, Sharing
 from app.protocol import (
     ConfigError,
     LoadedAssumptions,
     LoadedInstrument,
-    LoadedStudy,
     load_assumptions,
     load_instrument,
     load_study,
 )
 from app.resources import study_configs_dir
-from app.science.instruments import Instrument
-from app.simulated_people.visits import AvatarKind
 
+MOST_WORKERS = 64
 _COUNTS = re.compile(r"\d+(,\d+)*")
 _SHARD = re.compile(r"([1-9]\d*)/([1-9]\d*)")
 
 
 @dataclass(frozen=True)
-class StudyFile:
-    """A study file with the instruments that it asks."""
+class StudyFile(PilotStudy):
+    """A study that was read from a file."""
 
     path: Path
-    study: LoadedStudy
-    instruments: dict[str, Instrument]
 
 
 def read_study(name: str) -> StudyFile:
@@ -47,7 +44,7 @@ def read_study(name: str) -> StudyFile:
         loaded = load_study(path.read_text(encoding="utf-8"), instruments=instruments)
     except ConfigError as error:
         raise of_file(path, error) from error
-    return StudyFile(path, loaded, instruments)
+    return StudyFile(loaded, instruments, path)
 
 
 def read_assumptions(given: Path | None, study: StudyFile) -> LoadedAssumptions:
@@ -90,6 +87,14 @@ def read_shard(given: str | None) -> tuple[int, int]:
     if found is None or int(found[1]) > int(found[2]):
         raise ValueError(f"--shard {given}: give which part of how many, as in 1/3, 2/3 and 3/3")
     return int(found[1]) - 1, int(found[2])
+
+
+def require_sharing(sharing: Sharing, out: Path | None) -> None:
+    """Raise ValueError if work cannot be shared out like this."""
+    if not 1 <= sharing.workers <= MOST_WORKERS:
+        raise ValueError(f"--workers {sharing.workers}: 1 to {MOST_WORKERS} are valid")
+    if sharing.shard[1] > 1 and out is None:
+        raise ValueError("--shard needs --out, the file whose parts `pilot merge` puts together")
 
 
 def is_shipped(name: str) -> bool:

@@ -1,13 +1,28 @@
-"""Print a pilot as text: the curve, and every assumption that it rests on."""
+"""Print a pilot as text: how far it is, the curve, and every assumption that it rests on."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
-from app.cli.pilot.run import Curve
+from app.features.results.pilot.simulation import Curve, Progress, Tell
 from app.science.pilot import PowerPoint, smallest_sufficient
 
 _COLUMNS = (
     "     n  in test   power    95 % band       level    95 % band       type S  type M  failed"
 )
+
+
+def told(study: str, now: Callable[[str], None]) -> Tell:
+    """Return what tells a person in words how far the pilot of a study is."""
+
+    def tell(at: Progress) -> None:
+        match at.stage:
+            case "check":
+                now(f"checking {study}: {at.done} of {at.total} bodies")
+            case "people":
+                now(f"simulating {study}: {at.done} of {at.total} people")
+            case "power":
+                now(f"simulating {study}: {at.done} of {at.total} parts")
+
+    return tell
 
 
 def curve_text(curve: Curve) -> str:

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from app.features.results.pilot import Chunk, PilotError, SimulatedStudy, make_plan
+from app.features.results.pilot.simulation import Chunk, PilotError, SimulatedStudy, make_plan
 from app.protocol import Assumptions, StudyProtocol, load_assumptions, load_study
 from app.resources import study_configs_dir
 from app.science.statistical_tests import Sample, statistical_test

@@ -5,13 +5,14 @@ random numbers depend on the seed and on what the chunk is, and on nothing else,
 shared out changes no number.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 
-from app.protocol import Preregistration, StudyProtocol, ledger_block, sequences
+from app.protocol import LoadedStudy, Preregistration, StudyProtocol, ledger_block, sequences
+from app.science.instruments import Instrument
 from app.science.statistics import IntArray, StatisticsError
 
 CHUNK_SETS: Final = 50
@@ -24,6 +25,38 @@ SCENARIOS: Final[tuple[Scenario, ...]] = ("effect", "null")
 
 class PilotError(ValueError):
     """A pilot cannot be computed as asked; the message says why and what is valid."""
+
+
+@dataclass(frozen=True)
+class PilotStudy:
+    """A study with the instruments that it asks."""
+
+    study: LoadedStudy
+    instruments: Mapping[str, Instrument]
+
+
+@dataclass(frozen=True)
+class Sharing:
+    """How the work is shared out.
+
+    `workers`: processes. `shard`: the number of this part, from 0, and of all parts.
+    """
+
+    workers: int = 1
+    shard: tuple[int, int] = (0, 1)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a stage of a pilot is: bodies that are checked, people, or parts of a power curve."""
+
+    stage: Literal["check", "people", "power"]
+    done: int
+    total: int
+
+
+Tell = Callable[[Progress], None]
+"""Is told how far a pilot is, often."""
 
 
 @dataclass(frozen=True)

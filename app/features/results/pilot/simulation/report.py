@@ -1,26 +1,22 @@
-"""What a simulated cohort says of a study: figures, texts for forms, and the command's output."""
+"""What a simulated cohort says of a study: figures, and texts for forms."""
 
-import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from scipy import stats
 
-from app.cli.pilot.check import Finding, Reached, check_file
-from app.cli.pilot.cohort import Cohort
-from app.cli.pilot.inputs import StudyFile, has_assumptions
-from app.cli.pilot.run import Curve, PowerOrder, power_of
+from app.features.results.pilot.simulation.check import Checked, Finding, Reached
+from app.features.results.pilot.simulation.cohort import Cohort
+from app.features.results.pilot.simulation.plan import PilotStudy
+from app.features.results.pilot.simulation.power import Curve
 from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
 from app.simulated_people.visits import PhaseOutcome, Visit
 
 MEASURES: Final = ("completions", "side_contacts", "contact_time_s", "out_of_order")
 PUBLISHED: Final = {45.0: 66.0, 125.0: 61.5, 350.0: 36.0}
 """Motor performance in per cent by end-to-end latency in ms (Waltemate et al. 2016, ten people)."""
-_SETS: Final = 1000
-_TARGET: Final = 0.8
 _MB_PER_MINUTE: Final = 2.03
 """Storage of a minute of both bodies at 90 Hz (docs/benchmarks.md, encoding)."""
 
@@ -73,44 +69,11 @@ class CohortReport:
     power: Curve | None
 
 
-def full_report(
-    file: StudyFile,
-    cohort: Cohort,
-    assumptions: Path | None,
-    workers: int,
-    now: Callable[[str], None],
-) -> CohortReport:
-    """Check the study, simulate its power if anything is assumed of answers, and report.
-
-    Raises the errors of `carry_out_power`.
-    """
-    checked = check_file(file, now)
-    curve = None
-    if has_assumptions(assumptions, file):
-        order = PowerOrder(
-            study=str(file.path),
-            assumptions=assumptions,
-            participants=(),
-            seed=int(cohort.header["seed"]),
-            sets=_SETS,
-            target=_TARGET,
-            workers=workers,
-            shard=(0, 1),
-            out=None,
-        )
-        curve = power_of(file, order, now)
-    return report_on(file, cohort, checked.reached, checked.findings, curve)
-
-
 def report_on(
-    file: StudyFile,
-    cohort: Cohort,
-    reached: Sequence[Reached],
-    findings: Sequence[Finding],
-    power: Curve | None,
+    pilot: PilotStudy, cohort: Cohort, checked: Checked, power: Curve | None
 ) -> CohortReport:
     """Summarise a cohort, with what a check of the study found."""
-    study = file.study.protocol
+    study = pilot.study.protocol
     finished = [visit for visit in cohort.visits if visit.failure is None]
     back_s = [sum(_walk_back_s(one) for one in visit.phases) for visit in finished]
     back_min = float(np.mean(back_s)) / 60.0 if back_s else 0.0
@@ -125,11 +88,11 @@ def report_on(
         cohort=cohort,
         cells=cells,
         changes=tuple(_changes(finished)),
-        session_min=visit_time(study, file.instruments).total + back_min,
+        session_min=visit_time(study, pilot.instruments).total + back_min,
         walk_back_min=back_min,
         storage_mb=(recorded_s / 60.0 + back_min) * _MB_PER_MINUTE,
-        reached=tuple(reached),
-        findings=tuple(findings),
+        reached=checked.reached,
+        findings=checked.findings,
         power=power,
     )
 
@@ -141,8 +104,8 @@ def paragraphs(report: CohortReport) -> Mapping[str, str]:
         f"A visit to the study {header['study']} takes about {report.session_min:.0f} minutes, "
         f"of which {report.walk_back_min:.1f} minutes are walks back between tasks. Before anybody "
         f"takes part, the procedure was rehearsed with {len(report.cohort.visits)} simulated people"
-        f" (seed {header['seed']}); {_failures(report.cohort)} of these visits could not be "
-        f"completed. {_reach_sentence(report)} The movement recorded of one person takes about "
+        f" (seed {header['seed']}); {failures_of(report.cohort)} of these visits could not be "
+        f"completed. {reach_sentence(report)} The movement recorded of one person takes about "
         f"{report.storage_mb:.0f} MB. These figures come from a simulation and say nothing about "
         "how people will feel."
     )
@@ -172,93 +135,43 @@ def paragraphs(report: CohortReport) -> Mapping[str, str]:
     return {"ethics": ethics, "preregistration": declared}
 
 
-def report_json(report: CohortReport) -> str:
-    """Return the report for scripts."""
+def report_data(report: CohortReport) -> dict[str, Any]:
+    """Return the report as plain data, the JSON of `reembody pilot`."""
     header, curve = report.cohort.header, report.power
-    return json.dumps(
-        {
-            "simulated": True,
-            "study": header["study"],
-            "study_sha256": header["study_sha256"],
-            "avatar": header["avatar"],
-            "participants": header["participants"],
-            "seed": header["seed"],
-            "sha256": report.cohort.sha256,
-            "real_time_factor": report.cohort.real_time_factor,
-            "unfinished": report.cohort.unfinished,
-            "failures": _failures(report.cohort),
-            "reach": [asdict(one) for one in report.reached],
-            "problems": [asdict(one) for one in report.findings],
-            "phases": [asdict(one) for one in report.cells],
-            "changes": [asdict(one) for one in report.changes],
-            "published": [
-                {"end_to_end_ms": ms, "performance_percent": share}
-                for ms, share in PUBLISHED.items()
-            ],
-            "session_min": report.session_min,
-            "walk_back_min": report.walk_back_min,
-            "storage_mb": report.storage_mb,
-            "power": [] if curve is None else [asdict(one) for one in curve.points],
-            "assumptions": [] if curve is None else curve.header["assumptions"],
-            "paragraphs": paragraphs(report),
-        },
-        indent=2,
-    )
+    return {
+        "simulated": True,
+        "study": header["study"],
+        "study_sha256": header["study_sha256"],
+        "avatar": header["avatar"],
+        "participants": header["participants"],
+        "seed": header["seed"],
+        "sha256": report.cohort.sha256,
+        "real_time_factor": report.cohort.real_time_factor,
+        "unfinished": report.cohort.unfinished,
+        "failures": failures_of(report.cohort),
+        "reach": [asdict(one) for one in report.reached],
+        "problems": [asdict(one) for one in report.findings],
+        "phases": [asdict(one) for one in report.cells],
+        "changes": [asdict(one) for one in report.changes],
+        "published": [
+            {"end_to_end_ms": ms, "performance_percent": share} for ms, share in PUBLISHED.items()
+        ],
+        "session_min": report.session_min,
+        "walk_back_min": report.walk_back_min,
+        "storage_mb": report.storage_mb,
+        "power": [] if curve is None else [asdict(one) for one in curve.points],
+        "assumptions": [] if curve is None else curve.header["assumptions"],
+        "paragraphs": dict(paragraphs(report)),
+    }
 
 
-def report_text(report: CohortReport) -> str:
-    """Describe the report."""
-    return "\n".join(_lines(report))
-
-
-def _lines(report: CohortReport) -> Iterator[str]:
-    cohort = report.cohort
-    header = cohort.header
-    yield (
-        f"SIMULATED: {len(cohort.visits)} of {header['participants']} people in "
-        f"{header['study']}, {header['avatar']}, seed {header['seed']}"
-    )
-    yield f"sha256 {cohort.sha256}; visits that could not be completed: {_failures(cohort)}"
-    if cohort.real_time_factor is not None:
-        yield f"{cohort.real_time_factor:.1f} s of visits for each second of processor time"
-    for visit in cohort.visits:
-        if visit.failure is not None:
-            yield f"  person {visit.number}: {visit.failure}"
-    yield ""
-    yield (
-        "limb  latency  people  tasks (SD)    of lowest  sides  red, s  early  walks back, s  none"
-    )
-    for one in report.cells:
-        share = "-" if one.share_of_lowest is None else f"{100 * one.share_of_lowest:.0f} %"
-        yield (
-            f"{one.limb:4} {one.latency_ms:5.0f} ms {one.people:7d}  {one.completions:5.2f} "
-            f"({one.completions_sd:4.2f}) {share:>11} {one.side_contacts:6.1f} "
-            f"{one.contact_time_s:7.1f} {one.out_of_order:6.2f} {one.walk_back_s:14.1f} "
-            f"{100 * one.at_floor:4.0f} %"
-        )
-    shares = ", ".join(f"{share:g} % at {ms:g} ms" for ms, share in PUBLISHED.items())
-    yield f"Published, end to end (Waltemate et al. 2016, another task): {shares}."
-    if report.changes:
-        yield ""
-        yield "Paired change from the lowest to the highest latency, 95 % t interval:"
-    for change in report.changes:
-        yield (
-            f"  {change.limb} {change.measure}: {change.mean:+.2f} "
-            f"[{change.low:+.2f}, {change.high:+.2f}], n = {change.people}"
-        )
-    yield ""
-    yield _reach_sentence(report)
-    for found in report.findings:
-        yield f"  {found.path}: {found.message}"
-    for text in paragraphs(report).values():
-        yield from ("", text)
-
-
-def _failures(cohort: Cohort) -> int:
+def failures_of(cohort: Cohort) -> int:
+    """Return how many visits could not be completed."""
     return sum(visit.failure is not None for visit in cohort.visits)
 
 
-def _reach_sentence(report: CohortReport) -> str:
+def reach_sentence(report: CohortReport) -> str:
+    """Say which boxes simulated bodies reached."""
     missed = [one for one in report.reached if one.out_of_reach]
     bodies = sorted({one.stature_m for one in report.reached})
     if not bodies:

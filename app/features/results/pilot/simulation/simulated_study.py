@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.results.pilot.plan import Chunk, PilotError, conditions_of, slots_of
+from app.features.results.pilot.simulation.plan import Chunk, PilotError, conditions_of, slots_of
 from app.protocol import (
     Answering,
     Assumptions,

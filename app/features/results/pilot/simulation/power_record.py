@@ -1,4 +1,4 @@
-"""The record of a pilot: one line for what is computed, then one for each finished chunk.
+"""The record of a power run: a line for what is computed, then one for each finished chunk.
 
 A line that was written stays valid whatever happens afterwards, so a pilot that was stopped goes on
 where it was, and records of several machines can be put together. The numbers are written with all
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from app.features.results.pilot import Chunk, Scenario
+from app.features.results.pilot.simulation.plan import Chunk, Scenario
 from app.science.pilot import Results
 
 FORMAT = 1

@@ -1,0 +1,84 @@
+"""What a pilot computes: a check of the study, a cohort's visits, the power of its test.
+
+The command and the worker processes of the server import it; the server itself does not, because it
+loads the physics.
+"""
+
+from app.features.results.pilot.simulation.check import Checked, Finding, Reached, check_study
+from app.features.results.pilot.simulation.cohort import (
+    Cohort,
+    CohortOrder,
+    is_cohort,
+    merged_cohort,
+    simulate_cohort,
+)
+from app.features.results.pilot.simulation.plan import (
+    Chunk,
+    PilotError,
+    PilotPlan,
+    PilotStudy,
+    Progress,
+    Scenario,
+    Sharing,
+    Tell,
+    chunks_of,
+    lowest_p,
+    make_plan,
+    most_participants,
+)
+from app.features.results.pilot.simulation.power import (
+    Curve,
+    PowerOrder,
+    curve_json,
+    merged_curve,
+    simulate_power,
+)
+from app.features.results.pilot.simulation.report import (
+    PUBLISHED,
+    CohortReport,
+    failures_of,
+    paragraphs,
+    reach_sentence,
+    report_data,
+    report_on,
+)
+from app.features.results.pilot.simulation.simulated_study import SimulatedStudy
+from app.simulated_people.visits import AvatarKind
+
+__all__ = [
+    "PUBLISHED",
+    "AvatarKind",
+    "Checked",
+    "Chunk",
+    "Cohort",
+    "CohortOrder",
+    "CohortReport",
+    "Curve",
+    "Finding",
+    "PilotError",
+    "PilotPlan",
+    "PilotStudy",
+    "PowerOrder",
+    "Progress",
+    "Reached",
+    "Scenario",
+    "Sharing",
+    "SimulatedStudy",
+    "Tell",
+    "check_study",
+    "chunks_of",
+    "curve_json",
+    "failures_of",
+    "is_cohort",
+    "lowest_p",
+    "make_plan",
+    "merged_cohort",
+    "merged_curve",
+    "most_participants",
+    "paragraphs",
+    "reach_sentence",
+    "report_data",
+    "report_on",
+    "simulate_cohort",
+    "simulate_power",
+]
