@@ -35,6 +35,7 @@ from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, s
 from app.features.record.tryout import TryoutRunner
 from app.features.results.analysis import Drawings, FigurePreparation
 from app.features.results.exports import ExportQueue
+from app.features.results.pilot import PilotQueue
 from app.features.results.replay import ReplayQueue
 from app.lan import Network
 from app.platform.admission import Admission
@@ -58,6 +59,7 @@ PARTS: tuple[PartMaker, ...] = (
     Drawings.of,
     FigurePreparation.of,
     ReplayQueue.of,
+    PilotQueue.of,
     lambda context: CaptureQueue().watched_by(context.background, "captures"),
     lambda context: PredictionQueue().watched_by(context.background, "walking"),
     FitQueue.of,

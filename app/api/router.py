@@ -53,6 +53,7 @@ from app.features.record.tryout.endpoints import router as tryout
 from app.features.results.analysis.endpoints import router as analysis
 from app.features.results.exports.endpoints import router as exports
 from app.features.results.imports.endpoints import router as imports
+from app.features.results.pilot.endpoints import router as pilots
 from app.features.results.preregistration.endpoints import router as preregistrations
 from app.features.results.replay.endpoints import router as replays
 from app.platform.background import Failing
@@ -145,6 +146,7 @@ def _routes() -> tuple[BaseRoute, ...]:
             lab_state,
             imports,
             preregistrations,
+            pilots,
         ),
         *(walks, walking_models, tunings, trackers, performers),
     )

@@ -28,7 +28,7 @@ from app.models.questionnaires import Answer, ScoreValue, Submission
 from app.models.rights import AnswerCorrection, CopyMade, Erasure
 from app.models.road import RoadChunk, RoadCrossing, RoadRun
 from app.models.sessions import Phase, SessionContent, SessionEvent, StudySession
-from app.models.studies import InstrumentVersion, Study, StudyVersion, Suggestion
+from app.models.studies import InstrumentVersion, PilotRow, Study, StudyVersion, Suggestion
 from app.models.telemetry import (
     ClientReport,
     ClockProbe,
@@ -88,6 +88,7 @@ __all__ = [
     "Phase",
     "PhaseLatency",
     "PhaseQuality",
+    "PilotRow",
     "RoadChunk",
     "RoadCrossing",
     "RoadRun",

@@ -1,12 +1,12 @@
 """Tables of studies and instruments, with every version by the hash of its content.
 
-Experts' suggestions about a version of a study are stored with it.
+Experts' suggestions about a version of a study are stored with it, and so are its pilots.
 """
 
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, ForeignKey, String, Text, UniqueConstraint
+from sqlalchemy import JSON, CheckConstraint, ForeignKey, String, Text, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.database import Base
@@ -84,3 +84,34 @@ class Suggestion(Base):
     at: Mapped[UtcTime]
     decided_by: Mapped[str | None] = mapped_column(String(100))
     decided_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+
+
+class PilotRow(Base):
+    """A pilot of a study's version: simulated people, or the power of its test.
+
+    Nobody real is in it, and no session belongs to it, so deleting the row deletes all of it.
+    `options` is what was ordered, and `assumptions` the file of what is assumed of people's
+    answers. `summary` has the report, and `record` every simulated visit or part, one line of JSON
+    each; both are null until it is ready. `trouble` is why it failed.
+    """
+
+    __tablename__ = "pilots"
+    __table_args__ = (
+        CheckConstraint("state IN ('simulating', 'stopped', 'ready', 'failed')", "state"),
+        CheckConstraint("kind IN ('cohort', 'power')", "kind"),
+    )
+
+    id: Mapped[Id]
+    study_id: Mapped[str] = mapped_column(ForeignKey("studies.id"), index=True)
+    study_version_id: Mapped[str] = mapped_column(ForeignKey("study_versions.id"), index=True)
+    kind: Mapped[str] = mapped_column(String(20))
+    options: Mapped[dict[str, Any]] = mapped_column(JSON)
+    assumptions: Mapped[str | None] = mapped_column(Text)
+    state: Mapped[str] = mapped_column(String(20))
+    summary: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    # Up to some megabytes, which only a download needs.
+    record: Mapped[str | None] = mapped_column(Text, deferred=True)
+    trouble: Mapped[str | None] = mapped_column(Text)
+    by: Mapped[str] = mapped_column(String(100))
+    at: Mapped[UtcTime] = mapped_column(index=True)
+    ended_at: Mapped[UtcTime | None]

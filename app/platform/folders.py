@@ -18,7 +18,10 @@ BEGINNING = ".beginning-"
 DATABASE_SUFFIXES = ("", "-wal", "-shm", "-journal")
 _MOST_LOOKED_AT = 2000
 """Maximum number of files to search for another hard link."""
-_OURS = ("backups", "quarantine", "scratch", "walking", "tls", "half-made", "erasures.jsonl")
+_OURS = (
+    *("backups", "quarantine", "scratch", "walking", "tunings", "pilots"),
+    *("tls", "half-made", "erasures.jsonl"),
+)
 """Our files in a folder that may contain others, apart from the database's own files."""
 _TRACES = ("backups/*.reembody", "quarantine/*", "erasures.jsonl", "erasure-unfinished")
 _TRACES_IN_DATA_DIR = ("*.reembody", "walking/*", "scratch/exports/*", "*/codebook.csv", "*.yaml")

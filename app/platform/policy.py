@@ -183,6 +183,15 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/exports/{export_id}/file": READERS,
     "GET /api/studies/{key}/preregistration": READERS,
     "GET /api/studies/{key}/preregistration/report": READERS,
+    # Simulations of a study, of nobody: deleted as a whole.
+    "GET /api/studies/{key}/pilot-defaults": READERS,
+    "GET /api/studies/{key}/pilots": READERS,
+    "POST /api/studies/{key}/pilots": DESIGNERS,
+    "GET /api/studies/{key}/pilots/{pilot_id}": READERS,
+    "DELETE /api/studies/{key}/pilots/{pilot_id}": DESIGNERS,
+    "POST /api/studies/{key}/pilots/{pilot_id}/stop": DESIGNERS,
+    "POST /api/studies/{key}/pilots/{pilot_id}/resume": DESIGNERS,
+    "GET /api/studies/{key}/pilots/{pilot_id}/record": READERS,
     # Answers that were collected elsewhere.
     "POST /api/studies/{key}/imports/look": DESIGNERS,
     "POST /api/studies/{key}/imports/check": DESIGNERS,

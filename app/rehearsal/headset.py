@@ -10,20 +10,22 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
+from httpx2 import AsyncClient
 from numpy.typing import NDArray
 
-from app.client import RoadClient, TelemetryClient, TelemetryError
+from app.client import Json, RoadClient, TelemetryClient, TelemetryError, call_with_retry
 from app.protocol import Tasks
-from app.rehearsal.avatar_source import AvatarSource
+from app.protocol.avatar import AvatarFile, configuration_of
 from app.rehearsal.road_run import CrossingRun
 from app.rehearsal.road_shape import RoadShape
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
 from app.science.rotations import FloatArray
 from app.science.simulation import GoalKind
-from app.science.skeleton import JOINT_NAMES, Pose
+from app.science.skeleton import JOINT_NAMES, Pose, build_skeleton
 from app.science.tasks import Laterality, Limb, TaskLayout, TaskRules
 from app.simulated_people.avatars import CannotChange, DelayedCopy, PhysicsBody, RemoteAvatar
 from app.simulated_people.body import FRAME_RATE_HZ, Person
@@ -57,6 +59,43 @@ LATE_S = 0.2
 
 class RoadLostError(Exception):
     """The study's road broke off during a phase; the message says why."""
+
+
+class AvatarSource(Protocol):
+    """A source of the physics avatar of a session."""
+
+    async def request_avatar(self, stature_m: float, body: str | None = None) -> PhysicsBody:
+        """Return the avatar for a participant of this stature, with the body of this name.
+
+        Without a name it has the body of the avatar's configuration.
+        """
+
+
+@dataclass(frozen=True)
+class FromServer:
+    """The avatar that the server builds and records.
+
+    `http` sends as the session's paired headset. `with_fingers`: the participant's are given.
+    """
+
+    http: AsyncClient
+    with_fingers: bool = False
+
+    async def request_avatar(self, stature_m: float, body: str | None = None) -> PhysicsBody:
+        """Return the avatar for a participant of this stature, with the body of this name.
+
+        Raises the errors of `call_with_retry`.
+        """
+        answer: Json = await call_with_retry(
+            self.http, "POST", "/api/vr/avatar", {"stature_m": stature_m, "body": body}
+        )
+        configuration = configuration_of(AvatarFile.model_validate(answer["configuration"]))
+        # Loading the model and the compiled code takes a second or two.
+        own_m = build_skeleton(stature_m).standing_hips_m
+        scale = answer["standing_hips_m"] / own_m
+        return await asyncio.to_thread(
+            PhysicsBody, answer["mjcf"], configuration, scale, with_fingers=self.with_fingers
+        )
 
 
 @dataclass

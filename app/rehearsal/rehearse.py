@@ -28,9 +28,8 @@ from app.client import (
 )
 from app.protocol import Tasks
 from app.rehearsal.answers import aspects_named
-from app.rehearsal.avatar_source import FromServer
 from app.rehearsal.cast import Cast, Interruption, perform
-from app.rehearsal.headset import WITHDRAWN, FrameClock, Headset
+from app.rehearsal.headset import WITHDRAWN, FrameClock, FromServer, Headset
 from app.resources import study_configs_dir
 from app.simulated_people.body import make_person
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app.cli.pilot.cohort import CohortOptions, carry_out_cohort
+from app.cli.pilot.run import CohortOptions, carry_out_cohort
 from app.features.results.pilot.simulation import Cohort, CohortOrder, Sharing
 from tests.cli.invoked import Invoked
 from tests.protocol.helpers import CONFIGS

@@ -10,8 +10,7 @@ import numpy as np
 
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
-from app.rehearsal.avatar_source import FromServer
-from app.rehearsal.headset import FrameClock, Headset
+from app.rehearsal.headset import FrameClock, FromServer, Headset
 from app.simulated_people.body import make_person
 
 

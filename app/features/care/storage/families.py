@@ -79,6 +79,7 @@ FAMILIES: dict[Family, tuple[str, ...]] = {
         "login_tokens",
         "pairing_codes",
         "participants",
+        "pilots",
         "slot_attempts",
         "studies",
         "study_members",

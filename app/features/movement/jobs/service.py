@@ -1,9 +1,9 @@
 """The rows of long jobs: ordered, stopped, resumed, removed, and recorded in the audit trail.
 
-A tuning of an avatar and a fit of a model of walking are such jobs: each has a row, whose state
-says whether it is to run, and a queue that follows it (`platform.resumable_jobs`). A `JobKind` has
-what differs between them. Its functions change rows within the caller's transaction; the caller
-lets the queue follow after the commit.
+A tuning of an avatar, a fit of a model of walking and a pilot of a study are such jobs: each has a
+row, whose state says whether it is to run, and a queue that follows it (`platform.resumable_jobs`).
+A `JobKind` has what differs between them. Its functions change rows within the caller's
+transaction; the caller lets the queue follow after the commit.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,11 +15,11 @@ from sqlalchemy.orm import Session
 
 from app.errors import Busy, NotFound, NotNow
 from app.features.people.audit import record
-from app.models import AvatarTuningRow, WalkingModelRow
+from app.models import AvatarTuningRow, PilotRow, WalkingModelRow
 from app.platform.access import Caller
 from app.platform.context import AppContext
 
-Row = TypeVar("Row", AvatarTuningRow, WalkingModelRow)
+Row = TypeVar("Row", AvatarTuningRow, PilotRow, WalkingModelRow)
 MOST_AT_ONCE: Final = 20
 """Maximum number of unfinished jobs of a kind that run or wait; the next one is refused."""
 

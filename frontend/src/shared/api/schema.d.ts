@@ -2348,6 +2348,134 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/studies/{key}/pilot-defaults": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Pilot Defaults
+         * @description Return what a pilot of the study's newest version starts with.
+         */
+        readonly get: operations["get_pilot_defaults_api_studies__key__pilot_defaults_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/pilots": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Pilots
+         * @description Return the pilots of a study, newest first; everything in them is simulated.
+         */
+        readonly get: operations["get_pilots_api_studies__key__pilots_get"];
+        readonly put?: never;
+        /**
+         * Post Pilot
+         * @description Start a pilot; the response is immediate, and its view shows the progress.
+         */
+        readonly post: operations["post_pilot_api_studies__key__pilots_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/pilots/{pilot_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Pilot
+         * @description Return one pilot: how far it is, or its figures.
+         */
+        readonly get: operations["get_pilot_api_studies__key__pilots__pilot_id__get"];
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Pilot
+         * @description Delete a pilot with everything in it, or cancel it.
+         */
+        readonly delete: operations["delete_pilot_api_studies__key__pilots__pilot_id__delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/pilots/{pilot_id}/record": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Pilot Record
+         * @description Return every simulated visit or part as `reembody pilot --out` writes it.
+         */
+        readonly get: operations["get_pilot_record_api_studies__key__pilots__pilot_id__record_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/pilots/{pilot_id}/resume": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Resume Pilot
+         * @description Resume a stopped pilot, or retry a failed one; the result is as if it had not stopped.
+         */
+        readonly post: operations["resume_pilot_api_studies__key__pilots__pilot_id__resume_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/pilots/{pilot_id}/stop": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Stop Pilot
+         * @description Stop a pilot; what it has finished is kept.
+         */
+        readonly post: operations["stop_pilot_api_studies__key__pilots__pilot_id__stop_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/studies/{key}/preregistration": {
         readonly parameters: {
             readonly query?: never;
@@ -3790,6 +3918,20 @@ export interface components {
             readonly remedy: string;
         };
         /**
+         * AssumptionView
+         * @description One number that is assumed, with where it comes from.
+         */
+        readonly AssumptionView: {
+            /** Name */
+            readonly name: string;
+            /** Source */
+            readonly source: string;
+            /** Unit */
+            readonly unit: string;
+            /** Value */
+            readonly value: number | readonly number[];
+        };
+        /**
          * AttemptView
          * @description A session that occupies, or once occupied, a slot.
          *
@@ -4990,6 +5132,27 @@ export interface components {
             readonly value?: unknown;
         };
         /**
+         * ChangeView
+         * @description A measure's paired change from the lowest to the highest latency, with its t interval.
+         */
+        readonly ChangeView: {
+            /** High */
+            readonly high: number;
+            /** Limb */
+            readonly limb: string;
+            /** Low */
+            readonly low: number;
+            /** Mean */
+            readonly mean: number;
+            /**
+             * Measure
+             * @enum {string}
+             */
+            readonly measure: "completions" | "side_contacts" | "contact_time_s" | "out_of_order";
+            /** People */
+            readonly people: number;
+        };
+        /**
          * Check
          * @description A check of the pre-flight list, with its result.
          *
@@ -5146,6 +5309,41 @@ export interface components {
             readonly epoch: number;
             /** Uncertainty Ms */
             readonly uncertainty_ms: number | null;
+        };
+        /**
+         * CohortFigures
+         * @description The report of a cohort; `sha256` is that of its record, `failures` counts visits.
+         */
+        readonly CohortFigures: {
+            /**
+             * Avatar
+             * @enum {string}
+             */
+            readonly avatar: "physics" | "delayed_copy";
+            /** Changes */
+            readonly changes: readonly components["schemas"]["ChangeView"][];
+            /** Ethics */
+            readonly ethics: string;
+            /** Failures */
+            readonly failures: number;
+            /** Phases */
+            readonly phases: readonly components["schemas"]["PhaseFigures"][];
+            /** Problems */
+            readonly problems: readonly components["schemas"]["FindingView"][];
+            /** Published */
+            readonly published: readonly components["schemas"]["PublishedView"][];
+            /** Reach */
+            readonly reach: readonly components["schemas"]["ReachedView"][];
+            /** Session Min */
+            readonly session_min: number;
+            /** Sha256 */
+            readonly sha256: string;
+            /** Storage Mb */
+            readonly storage_mb: number;
+            /** Unfinished */
+            readonly unfinished: number;
+            /** Walk Back Min */
+            readonly walk_back_min: number;
         };
         /**
          * ColliderChange
@@ -6506,6 +6704,20 @@ export interface components {
             readonly orders: readonly string[];
             /** Participants */
             readonly participants: readonly string[];
+        };
+        /**
+         * FindingView
+         * @description What would break the study: its place in the file, and what to do.
+         */
+        readonly FindingView: {
+            /** Kind */
+            readonly kind: string;
+            /** Message */
+            readonly message: string;
+            /** Path */
+            readonly path: string;
+            /** Remedy */
+            readonly remedy: string;
         };
         /**
          * FitChoice
@@ -8332,6 +8544,34 @@ export interface components {
             readonly sd_ms: number;
         };
         /**
+         * NewCohort
+         * @description Simulated people who do all task phases of a visit.
+         *
+         *     `avatar`: null for the study's own. `assumptions`: what is assumed of answers, as a file; with
+         *     it, the power of the test is simulated, too.
+         */
+        readonly NewCohort: {
+            /** Assumptions */
+            readonly assumptions?: string | null;
+            /** Avatar */
+            readonly avatar?: ("physics" | "delayed_copy") | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly kind: "cohort";
+            /**
+             * Participants
+             * @default 12
+             */
+            readonly participants: number;
+            /**
+             * Seed
+             * @default 1
+             */
+            readonly seed: number;
+        };
+        /**
          * NewCorrection
          * @description A corrected value of one answer with its reason; null removes the answer.
          */
@@ -8399,6 +8639,41 @@ export interface components {
             readonly current: string;
             /** New */
             readonly new: string;
+        };
+        /**
+         * NewPowerRun
+         * @description The power of the study's test by number of participants.
+         *
+         *     `sets`: data sets for each number, with the effect and without. `target`: the power wanted.
+         */
+        readonly NewPowerRun: {
+            /**
+             * Assumptions
+             * @description YAML
+             */
+            readonly assumptions: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly kind: "power";
+            /** Participants */
+            readonly participants: readonly number[];
+            /**
+             * Seed
+             * @default 1
+             */
+            readonly seed: number;
+            /**
+             * Sets
+             * @default 1000
+             */
+            readonly sets: number;
+            /**
+             * Target
+             * @default 0.8
+             */
+            readonly target: number;
         };
         /**
          * NewScene
@@ -8994,6 +9269,37 @@ export interface components {
             readonly username: string;
         };
         /**
+         * PhaseFigures
+         * @description One limb at one latency: means over simulated people.
+         *
+         *     `at_floor`: the share who complete nothing. `share_of_lowest`: completions over those at the
+         *     lowest latency; null if there are none.
+         */
+        readonly PhaseFigures: {
+            /** At Floor */
+            readonly at_floor: number;
+            /** Completions */
+            readonly completions: number;
+            /** Completions Sd */
+            readonly completions_sd: number;
+            /** Contact Time S */
+            readonly contact_time_s: number;
+            /** Latency Ms */
+            readonly latency_ms: number;
+            /** Limb */
+            readonly limb: string;
+            /** Out Of Order */
+            readonly out_of_order: number;
+            /** People */
+            readonly people: number;
+            /** Share Of Lowest */
+            readonly share_of_lowest: number | null;
+            /** Side Contacts */
+            readonly side_contacts: number;
+            /** Walk Back S */
+            readonly walk_back_s: number;
+        };
+        /**
          * PhaseView
          * @description A phase that has been prepared, with what has happened in it so far.
          *
@@ -9100,6 +9406,171 @@ export interface components {
             readonly part: string;
         };
         /**
+         * PilotDefaults
+         * @description What a pilot of the study's newest version starts with.
+         *
+         *     `numbers`: participants of a power run, around the planned number. `most_participants`: places
+         *     of a closed ledger; null if it grows. `assumptions`: the file that comes with the product for
+         *     this study, null if there is none; `assumptions_trouble`: why that one does not fit the version.
+         */
+        readonly PilotDefaults: {
+            /** Assumptions */
+            readonly assumptions: string | null;
+            /** Assumptions Trouble */
+            readonly assumptions_trouble: string | null;
+            /**
+             * Avatar
+             * @enum {string}
+             */
+            readonly avatar: "physics" | "delayed_copy";
+            /** Most Participants */
+            readonly most_participants: number | null;
+            /** Numbers */
+            readonly numbers: readonly number[];
+            /** Participants */
+            readonly participants: number;
+            /** Version */
+            readonly version: number;
+        };
+        /**
+         * PilotListed
+         * @description A pilot of a study, without its figures.
+         *
+         *     `content_hash` is that of the study's `version`. `participants`: of a cohort one number.
+         *     `session_min` and `walk_back_min`: the length of a visit, and of its walks back, as the finished
+         *     cohort says; else null.
+         */
+        readonly PilotListed: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** Avatar */
+            readonly avatar: ("physics" | "delayed_copy") | null;
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "cohort" | "power";
+            /** Participants */
+            readonly participants: readonly number[];
+            readonly progress: components["schemas"]["PilotProgress"] | null;
+            /** Seed */
+            readonly seed: number;
+            /** Session Min */
+            readonly session_min: number | null;
+            /** Sets */
+            readonly sets: number | null;
+            /**
+             * Simulated
+             * @default true
+             * @constant
+             */
+            readonly simulated: true;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "simulating" | "stopped" | "ready" | "failed";
+            /** Trouble */
+            readonly trouble: string | null;
+            /** Version */
+            readonly version: number;
+            /** Walk Back Min */
+            readonly walk_back_min: number | null;
+        };
+        /**
+         * PilotProgress
+         * @description How far a pilot is: `done` of `total` bodies, people or parts of the power curve.
+         *
+         *     `waiting`: behind another pilot, or its process is starting. `held`: somebody is in a session.
+         *     `remaining_s`: estimated time of this stage without waiting.
+         */
+        readonly PilotProgress: {
+            /** Done */
+            readonly done: number;
+            /** Held */
+            readonly held: boolean;
+            /** Remaining S */
+            readonly remaining_s: number | null;
+            /**
+             * Stage
+             * @enum {string}
+             */
+            readonly stage: "check" | "people" | "power";
+            /** Total */
+            readonly total: number;
+            /** Waiting */
+            readonly waiting: boolean;
+        };
+        /**
+         * PilotView
+         * @description A pilot with its figures, as far as it has any, and a text for the preregistration.
+         */
+        readonly PilotView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** Avatar */
+            readonly avatar: ("physics" | "delayed_copy") | null;
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Ended At */
+            readonly ended_at: string | null;
+            readonly figures: components["schemas"]["CohortFigures"] | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "cohort" | "power";
+            /** Participants */
+            readonly participants: readonly number[];
+            readonly power: components["schemas"]["PowerFigures"] | null;
+            /** Preregistration */
+            readonly preregistration: string | null;
+            /** Processor S */
+            readonly processor_s: number | null;
+            readonly progress: components["schemas"]["PilotProgress"] | null;
+            /** Seed */
+            readonly seed: number;
+            /** Session Min */
+            readonly session_min: number | null;
+            /** Sets */
+            readonly sets: number | null;
+            /**
+             * Simulated
+             * @default true
+             * @constant
+             */
+            readonly simulated: true;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "simulating" | "stopped" | "ready" | "failed";
+            /** Trouble */
+            readonly trouble: string | null;
+            /** Version */
+            readonly version: number;
+            /** Walk Back Min */
+            readonly walk_back_min: number | null;
+        };
+        /**
          * PopulationOrigin
          * @description Synthetic walkers: the population, how often each walks each path, and the scene.
          *
@@ -9160,6 +9631,70 @@ export interface components {
             readonly skeleton: string;
             /** Source */
             readonly source: string;
+        };
+        /**
+         * PowerFigures
+         * @description A power curve; `preregistered` is false if only the assumptions name the test.
+         */
+        readonly PowerFigures: {
+            /** Alpha */
+            readonly alpha: number;
+            /** Assumed Difference */
+            readonly assumed_difference: number;
+            /** Assumptions */
+            readonly assumptions: readonly components["schemas"]["AssumptionView"][];
+            /** Assumptions Sha256 */
+            readonly assumptions_sha256: string;
+            /** Planned N */
+            readonly planned_n: number;
+            /** Power */
+            readonly power: readonly components["schemas"]["PowerPointView"][];
+            /** Preregistered */
+            readonly preregistered: boolean;
+            /** Sets */
+            readonly sets: number;
+            /** Smallest Sufficient N */
+            readonly smallest_sufficient_n: number | null;
+            /** Target */
+            readonly target: number;
+            readonly test: components["schemas"]["TestedView"];
+        };
+        /**
+         * PowerPointView
+         * @description Power and level at one number of participants, with Clopper-Pearson intervals of 95 %.
+         *
+         *     `type_s`: the share of significant results with the wrong sign; `type_m`: how many times too
+         *     large they are. Failed data sets count as not significant.
+         */
+        readonly PowerPointView: {
+            /** Failures */
+            readonly failures: number;
+            /** High */
+            readonly high: number;
+            /** Level */
+            readonly level: number;
+            /** Level Failures */
+            readonly level_failures: number;
+            /** Level High */
+            readonly level_high: number;
+            /** Level Low */
+            readonly level_low: number;
+            /** Low */
+            readonly low: number;
+            /** Mean Estimate */
+            readonly mean_estimate: number | null;
+            /** Mean In Test */
+            readonly mean_in_test: number;
+            /** N */
+            readonly n: number;
+            /** Power */
+            readonly power: number;
+            /** Sets */
+            readonly sets: number;
+            /** Type M */
+            readonly type_m: number | null;
+            /** Type S */
+            readonly type_s: number | null;
         };
         /**
          * PredictedView
@@ -9542,6 +10077,16 @@ export interface components {
             readonly verified: string;
         };
         /**
+         * PublishedView
+         * @description A published performance at an end-to-end latency, of another task.
+         */
+        readonly PublishedView: {
+            /** End To End Ms */
+            readonly end_to_end_ms: number;
+            /** Performance Percent */
+            readonly performance_percent: number;
+        };
+        /**
          * Quantiles
          * @description Quantiles of durations in seconds: 50 % of walks take p25 to p75, 90 % take p05 to p95.
          */
@@ -9570,6 +10115,26 @@ export interface components {
             readonly mean: number;
             /** Median */
             readonly median: number;
+        };
+        /**
+         * ReachedView
+         * @description How a slow body got through the first task of a limb at the longest latency.
+         */
+        readonly ReachedView: {
+            /** Body */
+            readonly body: string;
+            /** Completion S */
+            readonly completion_s: number | null;
+            /** Hand */
+            readonly hand: string;
+            /** Latency Ms */
+            readonly latency_ms: number;
+            /** Limb */
+            readonly limb: string;
+            /** Out Of Reach */
+            readonly out_of_reach: readonly string[];
+            /** Stature M */
+            readonly stature_m: number;
         };
         /**
          * ReadingChoice
@@ -11883,6 +12448,22 @@ export interface components {
             readonly name?: string | null;
             /** User Agent */
             readonly user_agent: string;
+        };
+        /**
+         * TestedView
+         * @description The test whose power is simulated.
+         */
+        readonly TestedView: {
+            /** Direction */
+            readonly direction: string;
+            /** Limb */
+            readonly limb: string;
+            /** Measure */
+            readonly measure: string;
+            /** Score */
+            readonly score?: string | null;
+            /** Test */
+            readonly test: string;
         };
         /**
          * TimelineRequest
@@ -18221,6 +18802,333 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["ErasureView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_pilot_defaults_api_studies__key__pilot_defaults_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PilotDefaults"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_pilots_api_studies__key__pilots_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["PilotListed"][];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_pilot_api_studies__key__pilots_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewCohort"] | components["schemas"]["NewPowerRun"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PilotView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_pilot_api_studies__key__pilots__pilot_id__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly pilot_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PilotView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_pilot_api_studies__key__pilots__pilot_id__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly pilot_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_pilot_record_api_studies__key__pilots__pilot_id__record_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly pilot_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The record. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/jsonl": unknown;
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly resume_pilot_api_studies__key__pilots__pilot_id__resume_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly pilot_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PilotView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly stop_pilot_api_studies__key__pilots__pilot_id__stop_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly pilot_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PilotView"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

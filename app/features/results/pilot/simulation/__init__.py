@@ -4,6 +4,7 @@ The command and the worker processes of the server import it; the server itself 
 loads the physics.
 """
 
+from app.features.results.pilot.order import PilotError
 from app.features.results.pilot.simulation.check import Checked, Finding, Reached, check_study
 from app.features.results.pilot.simulation.cohort import (
     Cohort,
@@ -14,7 +15,6 @@ from app.features.results.pilot.simulation.cohort import (
 )
 from app.features.results.pilot.simulation.plan import (
     Chunk,
-    PilotError,
     PilotPlan,
     PilotStudy,
     Progress,
@@ -24,11 +24,11 @@ from app.features.results.pilot.simulation.plan import (
     chunks_of,
     lowest_p,
     make_plan,
-    most_participants,
 )
 from app.features.results.pilot.simulation.power import (
     Curve,
     PowerOrder,
+    curve_data,
     curve_json,
     merged_curve,
     simulate_power,
@@ -38,6 +38,7 @@ from app.features.results.pilot.simulation.report import (
     CohortReport,
     failures_of,
     paragraphs,
+    preregistration_paragraph,
     reach_sentence,
     report_data,
     report_on,
@@ -67,6 +68,7 @@ __all__ = [
     "Tell",
     "check_study",
     "chunks_of",
+    "curve_data",
     "curve_json",
     "failures_of",
     "is_cohort",
@@ -74,8 +76,8 @@ __all__ = [
     "make_plan",
     "merged_cohort",
     "merged_curve",
-    "most_participants",
     "paragraphs",
+    "preregistration_paragraph",
     "reach_sentence",
     "report_data",
     "report_on",

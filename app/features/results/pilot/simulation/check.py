@@ -11,13 +11,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
-from app.features.results.pilot.simulation.plan import (
-    PilotStudy,
-    Progress,
-    Tell,
-    lowest_p,
-    most_participants,
-)
+from app.features.results.pilot.order import most_participants
+from app.features.results.pilot.simulation.plan import PilotStudy, Progress, Tell, lowest_p
 from app.protocol import StudyProtocol, imbalances, sequences
 from app.science.delay import LONGEST_DELAY_S
 from app.science.tasks import Laterality

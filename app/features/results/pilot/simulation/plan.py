@@ -11,20 +11,15 @@ from typing import Final, Literal
 
 import numpy as np
 
+from app.features.results.pilot.order import MOST_SETS, PilotError, require_numbers
 from app.protocol import LoadedStudy, Preregistration, StudyProtocol, ledger_block, sequences
 from app.science.instruments import Instrument
 from app.science.statistics import IntArray, StatisticsError
 
 CHUNK_SETS: Final = 50
 """Data sets of a chunk; another number would change every result."""
-MOST_PARTICIPANTS, MOST_SETS = 1000, 100_000
-FEWEST_PARTICIPANTS = 2
 Scenario = Literal["effect", "null"]
 SCENARIOS: Final[tuple[Scenario, ...]] = ("effect", "null")
-
-
-class PilotError(ValueError):
-    """A pilot cannot be computed as asked; the message says why and what is valid."""
 
 
 @dataclass(frozen=True)
@@ -91,19 +86,7 @@ class PilotPlan:
 
 def make_plan(study: StudyProtocol, participants: Sequence[int], sets: int, seed: int) -> PilotPlan:
     """Check what is asked; raises PilotError."""
-    wanted = tuple(sorted(set(participants)))
-    most = most_participants(study)
-    for n in wanted:
-        if not FEWEST_PARTICIPANTS <= n <= MOST_PARTICIPANTS:
-            raise PilotError(
-                f"{n} participants: {FEWEST_PARTICIPANTS} to {MOST_PARTICIPANTS} are valid"
-            )
-        if most is not None and n > most:
-            raise PilotError(
-                f"{n} participants: the study's ledger has {most} slots and is closed when they "
-                f"are taken. Ask for at most {most}, or raise orders.replicates or set "
-                "orders.when_full to grow in the study"
-            )
+    wanted = require_numbers(study, participants)
     if not 1 <= sets <= MOST_SETS:
         raise PilotError(
             f"{sets} data sets: 1 to {MOST_SETS} are valid; 500 give bands of 4.5 points"
@@ -111,13 +94,6 @@ def make_plan(study: StudyProtocol, participants: Sequence[int], sets: int, seed
     if seed < 0:
         raise PilotError(f"a seed of {seed} is not possible; give 0 or a greater number")
     return PilotPlan(wanted, sets, seed)
-
-
-def most_participants(study: StudyProtocol) -> int | None:
-    """Return how many people the study's ledger accepts; None if it grows."""
-    if study.orders.when_full == "grow":
-        return None
-    return study.orders.replicates * len(sequences(study))
 
 
 def chunks_of(plan: PilotPlan) -> Iterator[Chunk]:

@@ -7,8 +7,9 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
+from app.features.results.pilot.order import SETS, TARGET, numbers_around
 from app.features.results.pilot.simulation.plan import (
     Chunk,
     PilotPlan,
@@ -30,11 +31,6 @@ from app.features.results.pilot.simulation.simulated_study import SimulatedStudy
 from app.platform.workers import end_with_parent
 from app.protocol import LoadedAssumptions
 from app.science.pilot import PowerPoint, Results, power_point, smallest_sufficient
-
-SETS: Final = 1000
-TARGET: Final = 0.8
-_DEFAULT_SHARES = (0.5, 0.75, 1.0, 1.5, 2.0)
-"""Numbers of participants if none are given, as shares of the planned number."""
 
 
 @dataclass(frozen=True)
@@ -64,11 +60,6 @@ class Curve:
     header: Mapping[str, Any]
     points: tuple[PowerPoint, ...]
     unfinished: int
-
-
-def numbers_around(planned: int) -> tuple[int, ...]:
-    """Return the numbers of participants that are simulated if none are given."""
-    return tuple(max(2, round(one * planned)) for one in _DEFAULT_SHARES)
 
 
 def simulate_power(
@@ -151,21 +142,23 @@ def curve_of(record: Record) -> Curve:
 
 def curve_json(curve: Curve) -> str:
     """Return the curve as JSON: the same bytes for the same inputs, however it was computed."""
+    return json.dumps(curve_data(curve), indent=2)
+
+
+def curve_data(curve: Curve) -> dict[str, Any]:
+    """Return the curve as plain data, the JSON of `reembody pilot power`."""
     header = {
         key: value for key, value in curve.header.items() if key not in ("format", "assumptions")
     }
-    return json.dumps(
-        {
-            "simulated": True,
-            **header,
-            "smallest_sufficient_n": smallest_sufficient(curve.points, curve.header["target"]),
-            "failures": sum(point.failures + point.level_failures for point in curve.points),
-            "unfinished": curve.unfinished,
-            "power": [asdict(point) for point in curve.points],
-            "assumptions": curve.header["assumptions"],
-        },
-        indent=2,
-    )
+    return {
+        "simulated": True,
+        **header,
+        "smallest_sufficient_n": smallest_sufficient(curve.points, curve.header["target"]),
+        "failures": sum(point.failures + point.level_failures for point in curve.points),
+        "unfinished": curve.unfinished,
+        "power": [asdict(point) for point in curve.points],
+        "assumptions": curve.header["assumptions"],
+    }
 
 
 @contextmanager

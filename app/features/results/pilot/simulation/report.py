@@ -99,7 +99,7 @@ def report_on(
 
 def paragraphs(report: CohortReport) -> Mapping[str, str]:
     """Return texts for the ethics form and the preregistration, with the figures of the report."""
-    header, curve = report.cohort.header, report.power
+    header = report.cohort.header
     ethics = (
         f"A visit to the study {header['study']} takes about {report.session_min:.0f} minutes, "
         f"of which {report.walk_back_min:.1f} minutes are walks back between tasks. Before anybody "
@@ -109,30 +109,32 @@ def paragraphs(report: CohortReport) -> Mapping[str, str]:
         f"{report.storage_mb:.0f} MB. These figures come from a simulation and say nothing about "
         "how people will feel."
     )
+    return {"ethics": ethics, "preregistration": preregistration_paragraph(report.power)}
+
+
+def preregistration_paragraph(curve: Curve | None) -> str:
+    """Return a text for the preregistration: how the number of participants was simulated."""
     if curve is None or not curve.points:
-        declared = (
+        return (
             "The number of participants was not derived from a simulation: nothing is assumed yet "
             "of how people would answer."
         )
-    else:
-        test = curve.header["test"]
-        points = "; ".join(
-            f"n = {one.n}: no data set could be analysed"
-            if one.never_tested
-            else f"n = {one.n}: {one.power:.2f} [{one.low:.2f}, {one.high:.2f}],"
-            f" level {one.level:.3f}"
-            for one in curve.points
-        )
-        declared = (
-            f"The power of the test ({test['test']} of {test['score'] or test['measure']}, "
-            f"{test['limb']}, {test['direction']}, alpha {curve.header['alpha']:g}) was simulated "
-            f"with {curve.header['sets']} data sets for each number of participants, in the "
-            f"study's own orders and with its own exclusions, seed {curve.header['seed']}: {points}"
-            ". Bands are Clopper-Pearson intervals of 95 %. All of it follows from assumptions "
-            f"that nobody has measured in this study (SHA-256 {curve.header['assumptions_sha256']})"
-            "."
-        )
-    return {"ethics": ethics, "preregistration": declared}
+    test = curve.header["test"]
+    points = "; ".join(
+        f"n = {one.n}: no data set could be analysed"
+        if one.never_tested
+        else f"n = {one.n}: {one.power:.2f} [{one.low:.2f}, {one.high:.2f}], level {one.level:.3f}"
+        for one in curve.points
+    )
+    return (
+        f"The power of the test ({test['test']} of {test['score'] or test['measure']}, "
+        f"{test['limb']}, {test['direction']}, alpha {curve.header['alpha']:g}) was simulated "
+        f"with {curve.header['sets']} data sets for each number of participants, in the "
+        f"study's own orders and with its own exclusions, seed {curve.header['seed']}: {points}"
+        ". Bands are Clopper-Pearson intervals of 95 %. All of it follows from assumptions "
+        f"that nobody has measured in this study (SHA-256 {curve.header['assumptions_sha256']})"
+        "."
+    )
 
 
 def report_data(report: CohortReport) -> dict[str, Any]:

@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.results.pilot.simulation.plan import Chunk, PilotError, conditions_of, slots_of
+from app.features.results.pilot.order import PilotError
+from app.features.results.pilot.simulation.plan import Chunk, conditions_of, slots_of
 from app.protocol import (
     Answering,
     Assumptions,
