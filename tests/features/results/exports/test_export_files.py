@@ -109,6 +109,20 @@ def test_an_export_file_is_downloaded_whole_or_in_parts(site: Lab) -> None:
     assert [(copy.sessions, copy.bytes) for copy in _copies(site)] == [(2, done["bytes"])]
 
 
+def test_tables_without_movement_are_those_of_the_whole_export(small_site: Lab) -> None:
+    """An export of the tables alone has the same tables, and leaves out what reads the frames."""
+    client, files = small_site.operator, {}
+    for movement in (True, False):
+        done = _until(client, _order(client, movement=movement)["id"], "ready", "failed")
+        data = client.get(f"/api/exports/{done['id']}/file").content
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            files[movement] = {name: archive.read(name) for name in archive.namelist()}
+    left_out = {name.partition("/")[0] for name in files[True].keys() - files[False].keys()}
+    assert left_out == {"samples", "receipts"}
+    for name in files[False].keys() - {"README.txt"}:
+        assert files[False][name] == files[True][name], name
+
+
 def test_an_export_of_one_session_is_visible_to_its_owner_only(small_site: Lab) -> None:
     """An export of one session contains no other session and is visible only to its owner."""
     client = small_site.operator

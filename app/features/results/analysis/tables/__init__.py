@@ -9,7 +9,13 @@ included with `valid` false. Texts are `object`, integers `Int64`, numbers `floa
 
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.clocks import run_clocks
-from app.features.results.analysis.tables.context import KINDS, has_rules, of_kind
+from app.features.results.analysis.tables.context import (
+    KINDS,
+    Contexts,
+    has_rules,
+    of_kind,
+    shared_contexts,
+)
 from app.features.results.analysis.tables.equipment import (
     calibrations_table,
     clock_mapping_table,
@@ -51,6 +57,7 @@ from app.features.results.analysis.tables.trackers import (
 
 __all__ = [
     "KINDS",
+    "Contexts",
     "Kind",
     "alarms_table",
     "answers_table",
@@ -83,6 +90,7 @@ __all__ = [
     "run_clocks",
     "scores_table",
     "sessions_table",
+    "shared_contexts",
     "tracker_alignments_table",
     "tracker_samples",
 ]

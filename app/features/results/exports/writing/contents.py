@@ -21,6 +21,7 @@ from app.features.record.telemetry import epochs_of
 from app.features.results.analysis.codebook import codebook_frame
 from app.features.results.analysis.questions import WideColumn, wide_table
 from app.features.results.analysis.tables import (
+    Contexts,
     Kind,
     alarms_table,
     answers_table,
@@ -48,6 +49,7 @@ from app.features.results.analysis.tables import (
     road_records,
     scores_table,
     sessions_table,
+    shared_contexts,
     tracker_alignments_table,
     tracker_samples,
 )
@@ -132,9 +134,10 @@ class Contents:
     """The members of one export; iterate once, since `files` and `sessions` fill up meanwhile.
 
     `only`: leave out all other sessions, as for a participant's own copy. `movement`: include the
-    frames of every session, which are nearly all of an export's size. For sessions in `hidden`,
-    nothing that reveals their condition is written, whoever the copy is for; `revealed` are open
-    sessions whose condition is included because somebody had it shown.
+    frames of every session, which are nearly all of an export's size, and its receipt, which takes
+    about a second because it reads every frame. For sessions in `hidden`, nothing that reveals
+    their condition is written, whoever the copy is for; `revealed` are open sessions whose
+    condition is included because somebody had it shown.
     """
 
     db: Session
@@ -148,6 +151,7 @@ class Contents:
     audit_head: TrailHead = field(init=False)
     hidden: frozenset[str] = field(init=False)
     revealed: frozenset[str] = field(default=frozenset(), init=False)
+    _contexts: Contexts = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         self.audit_head = head_of(self.db)
@@ -177,7 +181,7 @@ class Contents:
         for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
             if self.movement:
                 yield from self._movement(code, session_id, bool(simulated), avatar)
-            yield self._member(receipt_path(code, session_id), self._receipt(session_id))
+                yield self._member(receipt_path(code, session_id), self._receipt(session_id))
         # Imported answers stay apart from the tables; a participant's own copy has only sessions.
         if self.kind in ("people", "all") and self.only is None:
             for name, body in import_files(self.db, study):
@@ -215,7 +219,10 @@ class Contents:
     def _table(
         self, name: str, table: Callable[[Session, str, Kind], pd.DataFrame]
     ) -> pd.DataFrame:
-        frame = table(self.db, self.study_key, self.kind)
+        # Tables are joined with the same sessions and phases. Not around `members`: a generator may
+        # be continued in another thread, where it would not find what is shared.
+        with shared_contexts(self._contexts):
+            frame = table(self.db, self.study_key, self.kind)
         own = frame if self.only is None else frame[frame["session_id"].isin(list(self.only))]
         return without_conditions(name, own, self.hidden)
 
@@ -226,7 +233,8 @@ class Contents:
         """
         if self.kind == "all" or self.only is not None:
             return
-        wide = wide_table(self.db, self.study_key, self.kind)
+        with shared_contexts(self._contexts):
+            wide = wide_table(self.db, self.study_key, self.kind)
         rows = wide.frame[wide.names].itertuples(index=False, name=None)
         yield self._member("wide.csv", plain_pieces(wide.names, rows))
         names = [one.name for one in fields(WideColumn)]

@@ -44,9 +44,10 @@ Reading the files
   road/, where it is there, holds the record of each run of the study's road as JSON lines: where
   the participant, cars and walkers were every step, and what was guessed. road_crossings.csv has
   the measures.
-  receipts/ holds one file per session that says how many frames were made, stored and are missing,
-  whether the event log was changed, whether the completions follow from the contacts, and which
-  latency the avatar really had. "complete": true means that nothing is missing.
+  receipts/, where movement was asked for, holds one file per session that says how many frames
+  were made, stored and are missing, whether the event log was changed, whether the completions
+  follow from the contacts, and which latency the avatar really had. "complete": true means that
+  nothing is missing.
   protocol/, unless a condition may not be known yet, holds what was done and asked: the study's
   file as each version had it, and its instruments with the wording, the scales and the formulas of
   their scores.
