@@ -165,7 +165,9 @@ def _template(request: HTTPConnection) -> str:
 
 def _device(db: Session, token: str | None, kind: str) -> Device:
     if not token:
-        raise NotSignedIn(f"this {kind} is not paired", remedy="Enter the code from the console.")
+        raise NotSignedIn(
+            f"this {kind} is not paired", remedy="Enter the code on the experimenter's screen."
+        )
     return device_of_token(db, token, kind)
 
 

@@ -55,7 +55,8 @@ def device_of_token(db: Session, token: str, kind: str) -> Device:
         )
     if device is None or device.kind != kind or device.revoked_at is not None:
         raise NotSignedIn(
-            f"this {kind} is no longer paired", remedy="Enter a new code from the console."
+            f"this {kind} is no longer paired",
+            remedy="Ask the experimenter for a new code, and enter it here.",
         )
     return device
 

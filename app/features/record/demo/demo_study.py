@@ -28,13 +28,13 @@ TITLE = {"en": "Demo lab (simulated people)", "de": "Demo-Labor (simulierte Pers
 DESCRIPTION = {
     "en": (
         "Twelve simulated people act through a delayed copy of their body at 0, 125 and 350 ms of "
-        "added latency, in phases of 10 s. Everything here comes from the rehearsal's "
+        "added latency, in 10-second phases. Everything here comes from the rehearsal's "
         "generator: it shows what the product does and says nothing about people."
     ),
     "de": (
         "Zwölf simulierte Personen handeln mit einer verzögerten Kopie ihres Körpers bei 0, 125 "
-        "und 350 ms zusätzlicher Verzögerung, in Phasen von 10 s. Alles hier stammt vom Generator "
-        "der Probe: Es zeigt, was das Produkt tut, und sagt nichts über Menschen."
+        "und 350 ms zusätzlicher Verzögerung, in Phasen von 10 Sekunden. Alles hier stammt vom "
+        "Generator der Probe: Es zeigt, was das Produkt tut, und sagt nichts über Menschen."
     ),
 }
 

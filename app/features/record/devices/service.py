@@ -68,7 +68,9 @@ def usable_code(db: Session, code: str, now: datetime, *, lock: bool = False) ->
     row = db.scalar(query.with_for_update() if lock else query)
     if row is None:
         raise NotFound(
-            "no session has this pairing code", value=code, remedy="Check the code on the console."
+            "no session has this pairing code",
+            value=code,
+            remedy="Compare it with the code on the experimenter's screen, and enter it again.",
         )
     if row.used_at is not None or row.expires_at <= now:
         raise Gone(

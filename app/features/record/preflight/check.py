@@ -15,6 +15,7 @@ from app.platform.context import AppContext
 from app.texts import Words
 
 Expected = Literal["at_least", "at_most"]
+FoundStatus = Literal["ok", "unneeded", "wait", "fail"]
 Unit = Literal["s", "ms", "mm", "Hz", "GB", "joints", "phases", "instruments", "texts"]
 
 
@@ -24,13 +25,14 @@ class Finding:
 
     Attributes:
         key: unique within its check; check and finding together form the code, as in "disk.low".
-        status: "wait" if it cannot be judged yet, but will be later without any action.
+        status: "wait" if it cannot be judged yet, but will be later without any action;
+            "unneeded" if the session uses nothing of what is checked.
         words: `{{value}}` and `{{limit}}` are replaced by what was measured.
         remedy: what to do about it; required for failures, and absent otherwise.
     """
 
     key: str
-    status: Literal["ok", "wait", "fail"]
+    status: FoundStatus
     words: Words
     remedy: Words | None = None
 

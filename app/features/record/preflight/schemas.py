@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, StringConstraints
 from app.features.record.preflight.check import Expected, Unit
 from app.features.record.preflight.checks.registry import CHECKS
 
-CheckStatus = Literal["ok", "wait", "fail", "overridden"]
+CheckStatus = Literal["ok", "unneeded", "wait", "fail", "overridden"]
 if TYPE_CHECKING:
     CheckKey = str
     CheckCode = str
@@ -33,7 +33,8 @@ class Override(BaseModel):
 class Check(BaseModel):
     """A check of the pre-flight list, with its result.
 
-    `wait`: it cannot be judged yet, but will be later without any action. `value` with its `unit`
+    `wait`: it cannot be judged yet, but will be later without any action. `unneeded`: the session
+    uses nothing of what is checked. `value` with its `unit`
     is what was measured; `limit` with `expected` is what it must comply with. `details` are names
     and hashes, which are not translated. `override`: the latest one; it applies only while the
     check still has the finding that was overridden.

@@ -33,6 +33,8 @@ from app.platform.context import AppContext
 
 CONTENT = "preflight"
 """The kind of stored content that contains the reasons of overrides."""
+GREEN = frozenset({"ok", "unneeded"})
+"""The statuses of checks that need no override."""
 
 
 async def preflight_of(context: AppContext, session_id: str) -> Preflight:
@@ -112,7 +114,7 @@ def override(
     """
     session = session_by_id(db, session_id, lock=True)
     require_open(session)
-    if found.status == "ok":
+    if found.status in GREEN:
         return found
     now = context.clock.utc_now()
     latest = Override(reason=request.reason, by=by, at=now, found=found.code)
@@ -154,7 +156,7 @@ def _with(check: Check, overrides: Mapping[str, Override]) -> Check:
     latest = overrides.get(check.key)
     if latest is None:
         return check
-    covered = check.status != "ok" and check.code == latest.found
+    covered = check.status not in GREEN and check.code == latest.found
     return check.model_copy(
         update={"status": "overridden" if covered else check.status, "override": latest}
     )

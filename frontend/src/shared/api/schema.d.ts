@@ -5156,7 +5156,8 @@ export interface components {
          * Check
          * @description A check of the pre-flight list, with its result.
          *
-         *     `wait`: it cannot be judged yet, but will be later without any action. `value` with its `unit`
+         *     `wait`: it cannot be judged yet, but will be later without any action. `unneeded`: the session
+         *     uses nothing of what is checked. `value` with its `unit`
          *     is what was measured; `limit` with `expected` is what it must comply with. `details` are names
          *     and hashes, which are not translated. `override`: the latest one; it applies only while the
          *     check still has the finding that was overridden.
@@ -5186,7 +5187,7 @@ export interface components {
              * Status
              * @enum {string}
              */
-            readonly status: "ok" | "wait" | "fail" | "overridden";
+            readonly status: "ok" | "unneeded" | "wait" | "fail" | "overridden";
             /** Unit */
             readonly unit?: ("s" | "ms" | "mm" | "Hz" | "GB" | "joints" | "phases" | "instruments" | "texts") | null;
             /** Value */
@@ -5936,6 +5937,8 @@ export interface components {
             readonly n_completed: number;
             /** N Not Valid */
             readonly n_not_valid: number;
+            /** N Running */
+            readonly n_running: number;
             /** N Sessions */
             readonly n_sessions: number;
             /** Simulated */

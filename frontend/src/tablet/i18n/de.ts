@@ -9,7 +9,7 @@ export const de: Record<keyof typeof en, string> = {
   ...formDe,
   "pair.title": "Dieses Tablet verbinden",
   "pair.lead":
-    "Geben Sie den Code ein, der auf dem Bildschirm der Versuchsleitung steht, oder scannen Sie den QR-Code.",
+    "Geben Sie den Code ein, der auf dem Bildschirm der Versuchsleitung steht. Steht ein QR-Code daneben, können Sie stattdessen ihn scannen.",
   "pair.code": "Verbindungscode",
   "pair.delete": "Letztes Zeichen löschen",
   "pair.connecting": "Verbindung wird hergestellt",

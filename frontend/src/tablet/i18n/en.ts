@@ -7,7 +7,8 @@ export const en = {
   ...pageEn,
   ...formEn,
   "pair.title": "Connect this tablet",
-  "pair.lead": "Enter the code shown on the experimenter's screen, or scan its QR code.",
+  "pair.lead":
+    "Enter the code shown on the experimenter's screen. If a QR code is beside it, you can scan that instead.",
   "pair.code": "Pairing code",
   "pair.delete": "Delete last character",
   "pair.connecting": "Connecting",

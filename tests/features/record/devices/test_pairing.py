@@ -76,7 +76,7 @@ def test_a_new_code_replaces_the_old_tablet(lab: Lab) -> None:
     old = lab.tablet(session_id)
     new = lab.tablet(session_id)
     refusal = error(old.get("/api/tablet/state"), 401, "not_signed_in")
-    assert refusal["remedy"] == "Enter a new code from the console."
+    assert refusal["remedy"] == "Ask the experimenter for a new code, and enter it here."
     assert new.get("/api/tablet/state").status_code == 200
 
 

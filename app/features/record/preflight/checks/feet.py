@@ -36,7 +36,7 @@ FEET = StateCheck(
     key="feet",
     title=Words(en="Feet", de="Füße"),
     findings=(
-        Finding("unneeded", "ok", Words(en="No foot task", de="Keine Aufgabe mit dem Fuß")),
+        Finding("unneeded", "unneeded", Words(en="No foot task", de="Keine Aufgabe mit dem Fuß")),
         Finding("no_headset", "wait", Words(en="Needs the headset", de="Braucht das Headset")),
         Finding(
             "unknown",

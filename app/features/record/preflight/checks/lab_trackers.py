@@ -45,7 +45,7 @@ LAB_TRACKERS = StateCheck(
     findings=(
         Finding(
             "unneeded",
-            "ok",
+            "unneeded",
             Words(en="The headset uses none", de="Das Headset verwendet keine"),
         ),
         Finding(

@@ -71,16 +71,16 @@ LATENCY = StateCheck(
             "unmeasured",
             "wait",
             Words(
-                en="Not measured yet; it will be measured in the first phase",
-                de="Noch nicht gemessen; sie wird in der ersten Phase gemessen",
+                en="Measured in the first phase",
+                de="Wird in der ersten Phase gemessen",
             ),
         ),
         Finding(
             "calibrated",
             "wait",
             Words(
-                en="Equipment calibrated; the latency will be measured in the first phase",
-                de="Geräte kalibriert; die Latenz wird in der ersten Phase gemessen",
+                en="Calibrated; measured in the first phase",
+                de="Kalibriert; wird in der ersten Phase gemessen",
             ),
         ),
         Finding(

@@ -27,7 +27,11 @@ ROAD = StateCheck(
     key="road",
     title=Words(en="Traffic", de="Verkehr"),
     findings=(
-        Finding("unneeded", "ok", Words(en="No road to cross", de="Keine Straße zu überqueren")),
+        Finding(
+            "unneeded",
+            "unneeded",
+            Words(en="No road to cross", de="Keine Straße zu überqueren"),
+        ),
         Finding(
             "missing",
             "fail",

@@ -60,7 +60,7 @@ INSTRUMENTS = StateCheck(
             ),
             remedy=_RESTORE,
         ),
-        Finding("none", "ok", Words(en="The study has none", de="Die Studie hat keine")),
+        Finding("none", "unneeded", Words(en="The study has none", de="Die Studie hat keine")),
         Finding("ok", "ok", Words(en="{{value}} unchanged", de="{{value}} unverändert")),
     ),
     run=_instruments,
@@ -152,7 +152,9 @@ LANGUAGE = StateCheck(
             ),
         ),
         Finding(
-            "ok", "ok", Words(en="All {{value}} texts present", de="Alle {{value}} Texte vorhanden")
+            "ok",
+            "ok",
+            Words(en="{{value}} texts are available", de="{{value}} Texte sind vorhanden"),
         ),
     ),
     run=_language,

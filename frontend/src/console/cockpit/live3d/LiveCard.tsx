@@ -156,12 +156,14 @@ interface MessageProps {
 
 function Message({ text, remedy, warns = false }: MessageProps): JSX.Element {
   return (
-    <div className={`${classes.state} ${warns ? classes.warn : ""}`} role="status">
-      <strong>
-        {warns && <Icon name="alert" size={18} />}
-        {text}
-      </strong>
-      {remedy !== undefined && <span>{remedy}</span>}
+    <div className={`${classes.state} ${warns ? classes.warn : ""}`}>
+      <div className={warns ? classes.warning : classes.message} role="status">
+        <strong>
+          {warns && <Icon name="alert" size={18} />}
+          {text}
+        </strong>
+        {remedy !== undefined && <span>{remedy}</span>}
+      </div>
     </div>
   );
 }

@@ -6,11 +6,12 @@ import { CHECKS } from "@shared/session/registries.generated";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
-import { amountOf, expectationOf, todoOf, valuesOf } from "./checkTexts";
+import { amountOf, expectationOf, hasTwoLines, todoOf, valuesOf } from "./checkTexts";
 import classes from "./Preflight.module.css";
 
 const ICONS: Readonly<Record<Check["status"], IconName>> = {
   ok: "check",
+  unneeded: "minus",
   wait: "clock",
   fail: "alert",
   overridden: "flag",
@@ -38,7 +39,7 @@ export function RunningChecks(): JSX.Element {
   return (
     <ul className={classes.list} aria-busy="true">
       {CHECKS.map((key) => (
-        <li key={key} className={`${classes.row} ${classes.wait}`}>
+        <li key={key} className={`${rowOf(key)} ${classes.wait}`}>
           <span className={classes.mark}>
             <Icon name="clock" size={18} />
           </span>
@@ -50,6 +51,9 @@ export function RunningChecks(): JSX.Element {
   );
 }
 
+const rowOf = (key: Check["key"]): string =>
+  hasTwoLines(key) ? `${classes.row} ${classes.twoLines}` : (classes.row ?? "");
+
 interface RowProps {
   readonly check: Check;
   readonly onOverride: CheckListProps["onOverride"];
@@ -60,16 +64,21 @@ function Row({ check, onOverride }: RowProps): JSX.Element {
   const todo = todoOf(check);
   const override = check.status === "overridden" ? check.override : null;
   return (
-    <li className={`${classes.row} ${classes[check.status]}`} data-check={check.key}>
+    <li className={`${rowOf(check.key)} ${classes[check.status]}`} data-check={check.key}>
       <span className={classes.mark}>
         <Icon name={ICONS[check.status]} size={18} />
       </span>
       <span className={classes.name}>{t(`preflight.check.${check.key}`)}</span>
       <span className={`${classes.found} numbers`}>
         {t(`preflight.found.${check.code}`, valuesOf(check, language))}
-        <CheckDetails check={check} />
+        {!hasTwoLines(check.key) && <CheckDetails check={check} />}
       </span>
       <span className={classes.status}>{t(`preflight.status.${check.status}`)}</span>
+      {hasTwoLines(check.key) && todo === null && (
+        <div className={classes.todo}>
+          <CheckDetails check={check} />
+        </div>
+      )}
       {todo !== null && (
         <div className={classes.todo}>
           <span>{t(todo)}</span>

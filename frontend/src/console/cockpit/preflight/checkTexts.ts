@@ -12,9 +12,14 @@ const SYMBOLS: Readonly<Partial<Record<NonNullable<Check["unit"]>, string>>> = {
   GB: "GB",
 };
 const DIGITS: Readonly<Partial<Record<NonNullable<Check["unit"]>, number>>> = { ms: 1, GB: 1 };
+const MS_PER_S = 1000;
+/** From here on a tenth of a millisecond decides nothing. */
+const COARSE_MS = 100;
 
 export function amountOf(value: number, unit: Check["unit"], language: string): string {
   if (unit == null) return number(value, language, 1);
+  if (unit === "ms" && value >= MS_PER_S) return `${number(value / MS_PER_S, language, 1)} s`;
+  if (unit === "ms" && value >= COARSE_MS) return `${number(value, language, 0)} ms`;
   const symbol = SYMBOLS[unit];
   const formatted = number(value, language, DIGITS[unit] ?? 0);
   return symbol === undefined ? formatted : `${formatted} ${symbol}`;
@@ -39,6 +44,14 @@ type Todo = Extract<Key, `preflight.todo.${string}`>;
 export function todoOf(check: Check): Todo | null {
   return check.status === "fail" ? (`preflight.todo.${check.code}` as Todo) : null;
 }
+
+/**
+ * Checks with two lines from the start: nothing is paired at first, so each has a remedy on its
+ * second line within seconds, which would push what is below it down.
+ */
+const IN_TWO_LINES: readonly Check["key"][] = ["tablet", "headset"];
+
+export const hasTwoLines = (key: Check["key"]): boolean => IN_TWO_LINES.includes(key);
 
 export const failing = (checks: readonly Check[]): readonly Check[] =>
   checks.filter(({ status }) => status === "fail");

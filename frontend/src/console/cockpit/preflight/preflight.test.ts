@@ -21,6 +21,9 @@ const check = (more: Partial<Check>): Check => ({
 describe("the texts of a check", () => {
   it("give quantities with their unit, and counts without", () => {
     expect(amountOf(1.84, "ms", "en")).toBe("1.8 ms");
+    expect(amountOf(10.1, "ms", "en")).toBe("10.1 ms");
+    expect(amountOf(741.4, "ms", "en")).toBe("741 ms");
+    expect(amountOf(3730.2, "ms", "en")).toBe("3.7 s");
     expect(amountOf(89.94, "Hz", "en")).toBe("90 Hz");
     expect(amountOf(1.1, "GB", "de")).toBe("1,1 GB");
     expect(amountOf(22, "joints", "en")).toBe("22");

@@ -14,6 +14,7 @@ export const preflightEn = {
   "preflight.loading": "Running the checks",
   "preflight.open": "Pre-flight list",
   "preflight.status.ok": "Passed",
+  "preflight.status.unneeded": "Not needed",
   "preflight.status.wait": "Waiting",
   "preflight.status.fail": "Failed",
   "preflight.status.overridden": "Overridden",
@@ -26,7 +27,7 @@ export const preflightEn = {
   "preflight.start.body":
     "Your reason and the results of the checks become part of the session's record.",
   "preflight.start.test":
-    "If you only want to try the study, go back to it and add a session of the kind Test: it needs no tablet or headset, and its data are kept apart from those of people.",
+    "If you only want to try the study, go back to it and add a session of the kind Test: it needs no tablet or headset, and its data are kept separate from participants' data.",
   "preflight.start.do": "Start anyway",
   "preflight.start.clear": "All checks pass now",
   "preflight.start.clear.body": "You can start the session without giving a reason.",
@@ -50,6 +51,7 @@ export const preflightDe: Readonly<Record<keyof typeof preflightEn, string>> = {
   "preflight.loading": "Die Prüfungen laufen",
   "preflight.open": "Startprüfung",
   "preflight.status.ok": "Bestanden",
+  "preflight.status.unneeded": "Nicht nötig",
   "preflight.status.wait": "Wartet",
   "preflight.status.fail": "Nicht bestanden",
   "preflight.status.overridden": "Übergangen",
@@ -62,7 +64,7 @@ export const preflightDe: Readonly<Record<keyof typeof preflightEn, string>> = {
   "preflight.start.body":
     "Ihre Begründung und die Ergebnisse der Prüfungen werden Teil des Protokolls der Sitzung.",
   "preflight.start.test":
-    "Wenn Sie die Studie nur ausprobieren möchten, gehen Sie zu ihr zurück und legen Sie eine Sitzung der Art Test an: Sie braucht weder Tablet noch Headset, und ihre Daten bleiben von denen der Personen getrennt.",
+    "Wenn Sie die Studie nur ausprobieren möchten, gehen Sie zu ihr zurück und legen Sie eine Sitzung der Art Test an: Sie braucht weder Tablet noch Headset, und ihre Daten bleiben von den Daten der Teilnehmenden getrennt.",
   "preflight.start.do": "Trotzdem starten",
   "preflight.start.clear": "Jetzt sind alle Prüfungen bestanden",
   "preflight.start.clear.body": "Die Sitzung kann ohne Begründung starten.",
