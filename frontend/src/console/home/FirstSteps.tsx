@@ -1,11 +1,12 @@
-/** What a newcomer can do in one click, before anybody has taken part. */
+/** What a newcomer can do in one click, before people have taken part. */
 import { Button, Title } from "@mantine/core";
 import { studies } from "@shared/api/endpoints";
+import type { Demo } from "@shared/api/housekeeping";
 import type { StudySummary } from "@shared/api/types";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
-import { useLocation } from "wouter";
+import { Link, useLocation } from "wouter";
 import { Failure } from "../errors";
 import { lastStudy } from "../frame/currentStudy";
 import { type Key, useTexts } from "../i18n";
@@ -14,14 +15,17 @@ import { studyQuery } from "../queries";
 import { opened, useActOnScreen } from "../tour/onScreen";
 import { studyToTry } from "../tour/studyToTry";
 import { studyLanguage, useStartTryout } from "../tour/TryIt";
-import { useLoadDemo } from "./demo";
+import { DemoProgress, DemoStatus, LoadRest, RemoveDemo } from "./DemoControls";
+import { FIGURES, useDemo, useLoadDemo } from "./demo";
+import { isThere, whoTookPart } from "./demoState";
 import classes from "./Home.module.css";
 
 export function FirstSteps({ listed }: { readonly listed: readonly StudySummary[] }): JSX.Element {
   const { t, language } = useTexts();
   const [, navigate] = useLocation();
   const queries = useQueryClient();
-  const demo = useLoadDemo();
+  const demo = useDemo();
+  const load = useLoadDemo();
   const start = useStartTryout();
   const act = useActOnScreen();
   const study = studyToTry(
@@ -43,17 +47,23 @@ export function FirstSteps({ listed }: { readonly listed: readonly StudySummary[
       <Title order={2} id="first-steps">
         {t("home.first")}
       </Title>
-      <p className={classes.lead}>{t("home.first.lead")}</p>
+      <p className={classes.lead}>
+        {t(whoTookPart(listed) === "nobody" ? "home.first.lead.nobody" : "home.first.lead.others")}
+      </p>
       <div className={classes.steps}>
-        <Step
-          step="home.demo"
-          icon="chart"
-          permission="demo"
-          isFirst
-          isBusy={demo.isPending}
-          error={demo.error}
-          onChoose={() => demo.mutate()}
-        />
+        {isThere(demo) ? (
+          <DemoStep demo={demo} />
+        ) : (
+          <Step
+            step="home.demo"
+            icon="chart"
+            permission="demo"
+            isFirst
+            isBusy={load.isPending}
+            error={load.error}
+            onChoose={() => load.mutate()}
+          />
+        )}
         <Step
           step="home.watch"
           icon="play"
@@ -81,6 +91,49 @@ export function FirstSteps({ listed }: { readonly listed: readonly StudySummary[
           onChoose={() => navigate("/new")}
         />
       </div>
+    </section>
+  );
+}
+
+/** The demo lab once it has been loaded, or is being loaded: how far it is, and its figures. */
+function DemoStep({ demo }: { readonly demo: Demo }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <section className={classes.step} aria-label={t("demo.label")}>
+      <div className={classes.demo}>
+        <strong>{t("demo.title")}</strong>
+        <DemoStatus demo={demo} all={t("demo.all", { planned: demo.people })} />
+        <DemoProgress demo={demo} />
+        <span className={classes.demoButtons}>
+          <LoadRest demo={demo} />
+          <RemoveDemo />
+        </span>
+      </div>
+      <Button component={Link} href={FIGURES} leftSection={<Icon name="chart" size={18} />}>
+        {t("demo.results")}
+      </Button>
+    </section>
+  );
+}
+
+/** The demo lab in one line, where the lab has sessions of people. */
+export function DemoLine(): JSX.Element | null {
+  const { t } = useTexts();
+  const demo = useDemo();
+  if (!isThere(demo)) return null;
+  return (
+    <section className={classes.demoLine} aria-label={t("demo.label")}>
+      <Icon name="body" size={17} />
+      <strong>{t("demo.title")}</strong>
+      <DemoStatus demo={demo} all={t("demo.all", { planned: demo.people })} />
+      <DemoProgress demo={demo} />
+      <span className={classes.stripButtons}>
+        <LoadRest demo={demo} />
+        <Button component={Link} href={FIGURES} size="compact-xs" variant="default">
+          {t("demo.results")}
+        </Button>
+        <RemoveDemo />
+      </span>
     </section>
   );
 }

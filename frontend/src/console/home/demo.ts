@@ -1,26 +1,31 @@
 /** The demo lab: load it, see how far it is, remove it. */
-import { DEMO_KEY, demo } from "@shared/api/housekeeping";
+import { DEMO_KEY, type Demo, demo } from "@shared/api/housekeeping";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect } from "react";
 import { useLocation } from "wouter";
 import { useTexts } from "../i18n";
+import { usePermissions } from "../permissions";
 import { demoQuery } from "../queries";
 
-/** How many simulated people a figure with an interval needs. */
-export const ENOUGH = 2;
-const FIGURES = `/studies/${DEMO_KEY}/dashboard`;
+export const FIGURES = `/studies/${DEMO_KEY}/dashboard`;
 
-/** How far the demo lab is; what it changes is requested again as people come through. */
-export function useDemo(enabled: boolean) {
+/** How far the demo lab is; null until it is known, and for people who may not load it. */
+export function useDemo(): Demo | null {
+  const can = usePermissions();
+  return useQuery({ ...demoQuery, enabled: can("demo") }).data ?? null;
+}
+
+/** The same; and what it changes is requested again as people come through. */
+export function useFollowedDemo(): Demo | null {
   const queries = useQueryClient();
-  const query = useQuery({ ...demoQuery, enabled });
-  const through = query.data?.completed;
+  const found = useDemo();
+  const through = found?.completed;
   useEffect(() => {
     if (through !== undefined && through > 0) {
       void queries.invalidateQueries({ queryKey: ["studies"] });
     }
   }, [through, queries]);
-  return query.data ?? null;
+  return found;
 }
 
 /** Loads it and goes to its figures. */

@@ -1,10 +1,12 @@
 /** Texts of the first page: the first steps, the state of the lab, and the demo lab. */
 export const homeEn = {
   "home.first": "Look around first",
-  "home.first.lead": "Nobody has taken part yet. Nothing you do here can harm later data.",
+  "home.first.lead.nobody": "Nobody has taken part yet. Nothing you do here can harm later data.",
+  "home.first.lead.others":
+    "No participant has taken part yet. Simulated and test sessions never mix with participants' data.",
   "home.demo": "Load the demo lab",
   "home.demo.body":
-    "Twelve simulated people visit a study in phases of 10 s. The page shows how far they are; how long it takes depends on the computer. You remove all of it with one click.",
+    "Twelve simulated people visit a study in 10-second phases. The page shows how far they are; how long it takes depends on the computer. You remove all of it with one click.",
   "home.watch": "Watch a session live",
   "home.watch.body":
     "A scripted participant goes through a whole session at four times normal speed. You sit at the operator's desk.",
@@ -17,7 +19,8 @@ export const homeEn = {
   "home.today": "Today's sessions",
   "home.today.none": "No session today.",
   "home.attention": "Needs attention",
-  "home.attention.none": "Nothing. Every session of the past week was finished and counts.",
+  "home.attention.none":
+    "Nothing. No participant's session was left open, ended early or is invalid.",
   "home.concern.left_open": "still open",
   "home.concern.never_started": "never started",
   "home.concern.not_valid": "completed, but does not count",
@@ -28,11 +31,15 @@ export const homeEn = {
   "home.progress.running_other": "{{count}} sessions running",
   "home.others": "{{simulated}} simulated, {{test}} tests",
   "demo.label": "Demo lab",
-  "demo.loading": "Simulated people who have finished: {{completed}} of {{people}}",
+  "demo.finished": "{{completed}} of {{planned}} simulated people have finished",
+  "demo.title": "Demo lab",
+  "demo.all": "All {{planned}} simulated people have finished.",
+  "demo.session":
+    "This person is simulated: the answers and movements say nothing about real people.",
   "demo.loaded":
     "These people are simulated: their answers and movements say nothing about real people.",
   "demo.stopped":
-    "{{completed}} of {{people}} simulated people have finished; the others were stopped.",
+    "{{completed}} of {{planned}} simulated people have finished; the others were stopped.",
   "demo.failed": "The simulated people could not continue: {{message}}",
   "demo.results": "See the figures",
   "demo.more": "Load the rest",
@@ -45,11 +52,13 @@ export const homeEn = {
 
 export const homeDe: Readonly<Record<keyof typeof homeEn, string>> = {
   "home.first": "Erst einmal umsehen",
-  "home.first.lead":
+  "home.first.lead.nobody":
     "Noch hat niemand teilgenommen. Nichts, was Sie hier tun, kann späteren Daten schaden.",
+  "home.first.lead.others":
+    "Noch hat kein Mensch teilgenommen. Simulierte Sitzungen und Tests bleiben von den Daten der Teilnehmenden getrennt.",
   "home.demo": "Demo-Labor laden",
   "home.demo.body":
-    "Zwölf simulierte Personen besuchen eine Studie in Phasen von 10 s. Die Seite zeigt, wie weit sie sind; wie lange es dauert, hängt vom Rechner ab. Ein Klick entfernt alles wieder.",
+    "Zwölf simulierte Personen besuchen eine Studie in Phasen von 10 Sekunden. Die Seite zeigt, wie weit sie sind; wie lange es dauert, hängt vom Rechner ab. Ein Klick entfernt alles wieder.",
   "home.watch": "Eine Sitzung live ansehen",
   "home.watch.body":
     "Eine simulierte Person geht in vierfachem Tempo durch eine ganze Sitzung. Sie sitzen am Platz der Versuchsleitung.",
@@ -62,7 +71,8 @@ export const homeDe: Readonly<Record<keyof typeof homeEn, string>> = {
   "home.today": "Sitzungen von heute",
   "home.today.none": "Heute keine Sitzung.",
   "home.attention": "Braucht Aufmerksamkeit",
-  "home.attention.none": "Nichts. Jede Sitzung der letzten Woche ist beendet und zählt.",
+  "home.attention.none":
+    "Nichts. Keine Sitzung mit Teilnehmenden blieb offen, endete vorzeitig oder ist ungültig.",
   "home.concern.left_open": "noch offen",
   "home.concern.never_started": "nie begonnen",
   "home.concern.not_valid": "abgeschlossen, zählt aber nicht",
@@ -73,11 +83,15 @@ export const homeDe: Readonly<Record<keyof typeof homeEn, string>> = {
   "home.progress.running_other": "{{count}} Sitzungen laufen",
   "home.others": "{{simulated}} simuliert, {{test}} Tests",
   "demo.label": "Demo-Labor",
-  "demo.loading": "Simulierte Personen, die fertig sind: {{completed}} von {{people}}",
+  "demo.finished": "{{completed}} von {{planned}} simulierten Personen sind fertig",
+  "demo.title": "Demo-Labor",
+  "demo.all": "Alle {{planned}} simulierten Personen sind fertig.",
+  "demo.session":
+    "Diese Person ist simuliert: Ihre Antworten und Bewegungen sagen nichts über Menschen aus.",
   "demo.loaded":
     "Diese Personen sind simuliert: Ihre Antworten und Bewegungen sagen nichts über Menschen aus.",
   "demo.stopped":
-    "{{completed}} von {{people}} simulierten Personen sind fertig; die übrigen wurden angehalten.",
+    "{{completed}} von {{planned}} simulierten Personen sind fertig; die übrigen wurden angehalten.",
   "demo.failed": "Die simulierten Personen konnten nicht weitermachen: {{message}}",
   "demo.results": "Zu den Abbildungen",
   "demo.more": "Die übrigen laden",

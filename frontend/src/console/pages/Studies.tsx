@@ -7,7 +7,9 @@ import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
-import { FirstSteps } from "../home/FirstSteps";
+import { useDemo } from "../home/demo";
+import { studyProgress, whoTookPart } from "../home/demoState";
+import { DemoLine, FirstSteps } from "../home/FirstSteps";
 import home from "../home/Home.module.css";
 import { LabState } from "../home/LabState";
 import { useTexts } from "../i18n";
@@ -69,15 +71,13 @@ function Listed({ studies, archived }: ListedProps): JSX.Element {
   const [since] = useState(midnight);
   const lab = useQuery({ ...labQuery(since), enabled: !archived });
   const state = lab.data;
-  const counts = studies.map(({ session_counts }) => session_counts);
-  const isUntouched = counts.every((of) => Object.values(of).every((count) => count === 0));
+  const tookPart = whoTookPart(studies);
   // What stands above the studies comes with them: shown later, it would push them down.
   if (!archived && lab.isPending) return <Loaded query={lab}>{() => null}</Loaded>;
-  const nobodyYet = counts.every((of) => (of["people"] ?? 0) === 0);
   return (
     <>
-      {!archived && !isUntouched && state !== undefined && <LabState state={state} />}
-      {!archived && nobodyYet && <FirstSteps listed={studies} />}
+      {!archived && tookPart !== "nobody" && state !== undefined && <LabState state={state} />}
+      {!archived && (tookPart === "people" ? <DemoLine /> : <FirstSteps listed={studies} />)}
       <Cards studies={studies} progress={state?.studies ?? []} />
     </>
   );
@@ -145,38 +145,36 @@ function Card({ study, progress }: CardProps): JSX.Element {
       </div>
       <p className={classes.about}>{study.description}</p>
       <div className={`${home.progress} numbers`}>
-        {progress !== undefined && (
-          <ProgressLine progress={progress} counts={study.session_counts} />
-        )}
+        {progress !== undefined && <ProgressLine study={study} progress={progress} />}
       </div>
     </Link>
   );
 }
 
 interface ProgressLineProps {
+  readonly study: StudySummary;
   readonly progress: StudyProgress;
-  readonly counts: StudySummary["session_counts"];
 }
 
-function ProgressLine({ progress, counts }: ProgressLineProps): JSX.Element {
+function ProgressLine({ study, progress }: ProgressLineProps): JSX.Element {
   const { t } = useTexts();
-  const { completed, planned, running, preregistered } = progress;
-  const text = t(preregistered ? "home.progress.preregistered" : "home.progress", {
-    completed,
-    planned,
-  });
+  const demo = useDemo();
+  const { of, completed, planned } = studyProgress(study, progress, demo);
+  const text = t(of, { completed, planned });
+  const { simulated = 0, test = 0 } = study.session_counts;
+  // Of the demo lab the text says it already.
+  const hasOthers = of !== "demo.finished" && simulated + test > 0;
+  // Visits that were broken off are open until the demo lab is loaded again, but nobody is there.
+  const isRunning = progress.running > 0 && (of !== "demo.finished" || demo?.state === "loading");
   return (
     <>
       <Progress value={planned === 0 ? 0 : (100 * completed) / planned} aria-label={text} />
       <div className={home.progressText}>
         <span>{text}</span>
         <span>
-          {running > 0
-            ? t("home.progress.running", { count: running })
-            : t("home.others", {
-                simulated: counts["simulated"] ?? 0,
-                test: counts["test"] ?? 0,
-              })}
+          {isRunning
+            ? t("home.progress.running", { count: progress.running })
+            : hasOthers && t("home.others", { simulated, test })}
         </span>
       </div>
     </>

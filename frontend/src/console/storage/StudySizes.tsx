@@ -1,8 +1,11 @@
 /** Each study with its size, the mean of a session, and how many more fit. */
-import type { StorageRoom, StudyRoom } from "@shared/api/housekeeping";
+import { DEMO_KEY, type StorageRoom, type StudyRoom } from "@shared/api/housekeeping";
 import { bytes, day, number } from "@shared/format";
 import type { JSX } from "react";
 import { Link } from "wouter";
+import { RemoveDemo } from "../home/DemoControls";
+import { useDemo } from "../home/demo";
+import { isThere } from "../home/demoState";
 import { useTexts } from "../i18n";
 import { KindBadge } from "../ui/badges";
 import { ScrollBox } from "../ui/tables";
@@ -40,11 +43,13 @@ export function StudySizes({ studies }: { readonly studies: readonly StudyRoom[]
 function StudyRow({ study }: { readonly study: StudyRoom }): JSX.Element {
   const { t, language } = useTexts();
   const { mean_bytes: mean, measured_kind: kind, room_for: room } = study;
+  const isRemovable = isThere(useDemo()) && study.key === DEMO_KEY;
   return (
     <tr>
       <td>
         <Link href={`/studies/${study.key}/sessions`}>{study.title}</Link>
         <span className={classes.about}>{study.key}</span>
+        {isRemovable && <RemoveDemo />}
       </td>
       <td>{number(study.sessions, language, 0)}</td>
       <td>{bytes(study.bytes, language)}</td>
