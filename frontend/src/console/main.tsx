@@ -2,7 +2,10 @@ import "@shared/theme/mantine.css";
 import { Notifications } from "@mantine/notifications";
 import { mountPage } from "@shared/ui/Page";
 import { Console } from "./Console";
+import { acceptSearchBehindHash } from "./frame/hashSearch";
 import { loaded, translations } from "./i18n";
+
+acceptSearchBehindHash();
 
 const children = (
   <>
