@@ -62,11 +62,16 @@ def test_figures_are_filtered_by_the_url_and_saved(
     database.close()
     page = page_factory((1280, 800))
     Experimenter(page, live_server.url).log_in()
-    page.goto(f"{live_server.url}/?kind=simulated&participant=SIM-0001#/studies/{STUDY}/dashboard")
+    # As a link to the page in another tab has it; the page then has it before its `#`.
+    page.goto(f"{live_server.url}/#/studies/{STUDY}/dashboard?kind=simulated&participant=SIM-0001")
     expect(page.get_by_text("from 1 valid session")).to_be_visible(timeout=PATIENCE_MS)
+    expect(page).to_have_url(re.compile(rf"\?kind=simulated&participant=SIM-0001#.*/{STUDY}/"))
     agency = page.get_by_role("figure").filter(has_text="Agency by added latency")
-    agency.scroll_into_view_if_needed()
     expect(agency.locator(".js-plotly-plot")).to_be_visible(timeout=PATIENCE_MS)
+    main = page.get_by_role("figure").filter(has_text="by added latency").all()[:4]
+    assert [one.locator(".js-plotly-plot").count() for one in main] == [1] * 4
+    boxes = [one.bounding_box() for one in main]
+    assert max(box["y"] + box["height"] for box in boxes if box is not None) <= 800
     expect(agency).to_contain_text("Only participants SIM-0001")
     with page.expect_download() as picture:
         agency.get_by_role("button", name="PNG", exact=True).click()

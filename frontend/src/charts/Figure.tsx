@@ -13,6 +13,8 @@ interface FigureProps {
   readonly failed: string;
   /** Draw the figure only when it is scrolled near the window: for pages with many figures. */
   readonly lazy?: boolean;
+  /** As high as what it stands in, instead of as high as the server requests. */
+  readonly fills?: boolean;
 }
 
 /** How far below the window a figure may be when it is drawn. */
@@ -25,6 +27,7 @@ export function Figure({
   label,
   watermark,
   lazy = false,
+  fills = false,
   ...texts
 }: FigureProps): JSX.Element {
   const root = useRef<HTMLElement>(null);
@@ -39,7 +42,7 @@ export function Figure({
     return draw(element, figure, palette, watermark, setState);
   }, [figure, scheme, watermark, isNear]);
   return (
-    <div style={{ position: "relative", height: heightOf(figure) }}>
+    <div style={{ position: "relative", height: fills ? "100%" : heightOf(figure) }}>
       {state !== "drawn" && (
         <Center pos="absolute" inset={0}>
           {state === "failed" ? (

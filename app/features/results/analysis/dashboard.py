@@ -51,6 +51,7 @@ def dashboard_of(
         n_sessions=len(filtered.sessions),
         n_completed=int((filtered.sessions["status"] == "completed").sum()),
         n_not_valid=n_not_valid(filtered.sessions),
+        n_running=int((filtered.visible["status"] == "active").sum()),
         avatar=sorted(set(filtered.sessions["avatar"])),
         filter=chosen,
         choices=_choices(material),

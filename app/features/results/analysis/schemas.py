@@ -129,7 +129,8 @@ class FilterChoices(BaseModel):
 class DashboardFigures(BaseModel):
     """The figures of a study's sessions of one kind that pass a filter.
 
-    `n_not_valid` of the `n_completed` sessions are not valid by the study's rules.
+    `n_not_valid` of the `n_completed` sessions are not valid by the study's rules. `n_running`
+    sessions are still running, and what they have so far is drawn, too; 0 in a blinded study.
     """
 
     kind: str
@@ -137,6 +138,7 @@ class DashboardFigures(BaseModel):
     n_sessions: int
     n_completed: int
     n_not_valid: int
+    n_running: int
     avatar: list[str]
     filter: FigureFilter
     choices: FilterChoices

@@ -11,11 +11,13 @@ import classes from "./Counted.module.css";
 interface CountedProps {
   /** Undefined until it has been loaded. */
   readonly found: { readonly n_completed: number; readonly n_not_valid: number } | undefined;
+  /** How many sessions are still running, whose data so far are in it. */
+  readonly running?: number;
   /** What is being done with newer data; null for nothing. */
   readonly doing: string | null;
 }
 
-export function Counted({ found, doing }: CountedProps): JSX.Element {
+export function Counted({ found, running = 0, doing }: CountedProps): JSX.Element {
   const { t } = useTexts();
   return (
     <span className={classes.counted}>
@@ -24,7 +26,10 @@ export function Counted({ found, doing }: CountedProps): JSX.Element {
           <Loader size={14} role="status" aria-label={doing} />
         )}
       </span>
-      {found === undefined ? "…" : sessionCounts(found, t)}
+      <span>
+        {found === undefined ? "…" : sessionCounts(found, t)}
+        {found !== undefined && running > 0 && t("dashboard.running", { count: running })}
+      </span>
     </span>
   );
 }

@@ -170,6 +170,7 @@ def test_the_counts_are_those_of_the_study(database: Database) -> None:
     _build(database, SessionSpec("P-1"), SessionSpec("P-2", status="active"))
     view = _dashboard(database)
     assert (view.n_sessions, view.n_completed, view.avatar) == (2, 1, ["delayed_copy"])
+    assert view.n_running == 1
 
 
 @pytest.mark.one_engine
@@ -187,6 +188,7 @@ def test_a_blinded_dashboard_leaves_out_open_sessions(database: Database) -> Non
     )
     view = _dashboard(database)
     figures = {entry.key: entry for entry in view.figures}
+    assert view.n_running == 0
     assert not any("P-0003" in json.dumps(entry.figure) for entry in view.figures)
     assert all(figures[key].n == 2 for key in COUNTING if key not in NEEDS_MOVEMENT)
     assert all("blinded" in entry.caption for entry in view.figures)

@@ -135,6 +135,51 @@ def test_scores_that_are_missing_do_not_count() -> None:
     assert by_key["embodiment_ownership"].empty is not None
 
 
+def _scores(values: dict[str, dict[float, float]]) -> pd.DataFrame:
+    return pd.DataFrame(
+        [
+            {
+                "participant_code": code,
+                "limb": "hand",
+                "position": 1,
+                "latency_ms": latency,
+                "score": "agency",
+                "value": value,
+                "minimum": -15.0,
+                "maximum": 15.0,
+                "instrument": "karas2020",
+            }
+            for code, by_latency in values.items()
+            for latency, value in by_latency.items()
+        ]
+    )
+
+
+def _agency(values: dict[str, dict[float, float]]) -> Drawing:
+    return next(one for one in embodiment_drawings(_scores(values)) if one.key.endswith("agency"))
+
+
+def test_the_number_of_participants_is_beside_the_panels_title_and_never_below_an_axis() -> None:
+    """Where latencies differ in n, its range is named; ticks are the latencies alone."""
+    figure = _agency({"P-1": {0.0: 7.0, 350.0: 2.0}, "P-2": {0.0: 5.0}}).as_json()
+    assert figure is not None
+    assert figure["layout"]["annotations"][0]["text"] == "Hand task, n = 1–2"
+    assert figure["layout"]["xaxis"]["ticktext"] == ["0", "350"]
+    alike = _agency({"P-1": {0.0: 7.0}, "P-2": {0.0: 5.0}}).as_json()
+    assert alike is not None
+    assert alike["layout"]["annotations"][0]["text"] == "Hand task, n = 2"
+
+
+def test_an_interval_beyond_the_possible_values_is_marked_where_it_leaves_the_axis() -> None:
+    """Of 15 and 13 the interval is 14 ± 12.7, so it goes on above 16.5; of 1 and 2 it does not."""
+    drawing = _agency({"P-1": {0.0: 15.0, 350.0: 1.0}, "P-2": {0.0: 13.0, 350.0: 2.0}})
+    (mark,) = _traces(drawing, "interval goes on, hand")
+    assert (mark["x"], mark["y"]) == ([0.0], [16.5])
+    assert mark["marker"]["symbol"] == "triangle-up"
+    assert mark["customdata"] == pytest.approx([14.0 + 12.7062])
+    assert not mark["cliponaxis"]
+
+
 def test_every_joint_is_in_one_part_of_the_body() -> None:
     """Each of the 21 joints is in exactly one of six body parts."""
     assert len(BODY_PARTS) == 6

@@ -34,7 +34,8 @@ _STYLES = {
 MEANS = (
     "Thin lines are participants; the thick line is their mean with its 95 % confidence interval "
     "(t distribution). The shape beside it is the distribution of 5 or more participants; n "
-    "is beside each panel's title, or below each latency where it differs."
+    "is beside each panel's title, from the smallest to the largest where latencies differ. "
+    "A triangle marks an interval that goes on beyond the possible values."
 )
 MIN_FOR_A_SHAPE = 5
 MANY = 60
@@ -124,28 +125,39 @@ def latency_figure(
         for trace in (*_shapes(own, limb, places, unit), _people(own, unit, across, column == 1)):
             figure.add_trace(trace, row=1, col=column)
         figure.add_trace(_means(own, limb, unit, across), row=1, col=column)
-        counts = own.groupby("x")["value"].count()
-        numbers = [int(counts.get(place, 0)) for place in places]
-        alike = len(set(numbers)) == 1
+        for trace in _beyond(own, limb, unit, _room(limits)):
+            figure.add_trace(trace, row=1, col=column)
         figure.update_xaxes(
             title_text=across.title,
-            ticktext=[
-                across.tick(place) if alike else f"{across.tick(place)}<br>n = {n}"
-                for place, n in zip(places, numbers, strict=True)
-            ],
+            ticktext=[across.tick(place) for place in places],
             row=1,
             col=column,
         )
-        if alike:
-            figure.layout.annotations[column - 1].text += f", n = {numbers[0]}"
+        # Never below the ticks: figures side by side then have their axes at the same heights.
+        figure.layout.annotations[column - 1].text += f", {_count_words(own, places)}"
     # Panels, lines and shapes are named where they are, and by the caption.
     figure.update_layout(showlegend=False, margin={"b": NO_LEGEND_PX})
-    figure.update_xaxes(title_font_size=13, tickangle=0)
+    figure.update_xaxes(title_font_size=13, title_standoff=4, tickangle=0)
     figure.update_yaxes(title_text=axis, row=1, col=1)
     if limits is not None:
-        room = 0.05 * (limits[1] - limits[0])
-        figure.update_yaxes(range=[limits[0] - room, limits[1] + room])
+        figure.update_yaxes(range=_room(limits))
     return figure
+
+
+def _room(limits: tuple[float, float] | None) -> tuple[float, float] | None:
+    """Return the ends of the y axis: the possible values, and a margin."""
+    if limits is None:
+        return None
+    room = 0.05 * (limits[1] - limits[0])
+    return limits[0] - room, limits[1] + room
+
+
+def _count_words(own: pd.DataFrame, places: Sequence[float]) -> str:
+    """Return the number of participants, or the smallest and the largest where places differ."""
+    counts = own.groupby("x")["value"].count()
+    numbers = [int(counts.get(place, 0)) for place in places]
+    low, high = min(numbers), max(numbers)
+    return f"n = {low}" if low == high else f"n = {low}–{high}"
 
 
 def drawn_rows(values: pd.DataFrame, unit: str, across: Across = LATENCY) -> pd.DataFrame:
@@ -237,6 +249,37 @@ def _people(own: pd.DataFrame, unit: str, across: Across, legend: bool) -> go.Sc
         marker={"color": colour, "size": 5, "symbol": "circle-open"},
         hovertemplate=f"%{{text}}<br>%{{y:.3g}} {unit}{_place_words(across)}<extra></extra>",
     )
+
+
+def _beyond(
+    own: pd.DataFrame, limb: str, unit: str, ends: tuple[float, float] | None
+) -> list[go.Scatter]:
+    """Return a triangle at each end of the y axis where intervals go on beyond it."""
+    if ends is None:
+        return []
+    traces = []
+    for end, symbol, sign in zip(ends, ("triangle-down", "triangle-up"), (-1, 1), strict=True):
+        found = {
+            at: cell.mean + sign * cell.half_width
+            for at, cell in cells(own, "x").items()
+            if cell.half_width is not None
+            and sign * (cell.mean + sign * cell.half_width) > sign * end
+        }
+        if not found:
+            continue
+        traces.append(
+            go.Scatter(
+                x=list(found),
+                y=[end] * len(found),
+                customdata=list(found.values()),
+                mode="markers",
+                marker={"color": _STYLES[limb][0], "size": 9, "symbol": symbol},
+                cliponaxis=False,
+                name=f"interval goes on, {limb}",
+                hovertemplate=f"the interval goes on to %{{customdata:.3g}} {unit}<extra></extra>",
+            )
+        )
+    return traces
 
 
 def _place_words(across: Across) -> str:

@@ -105,7 +105,7 @@ class LineEnd:
     colour: str
 
 
-NO_LEGEND_PX = 56
+NO_LEGEND_PX = 46
 """Below a plot whose lines are labelled where they are."""
 PLOT_PX = 240.0
 """About the height of a plot, to tell which labels would cover each other."""

@@ -3,7 +3,8 @@
  *
  * The groups are requested one after the other, from the top, so the first is shown early.
  */
-import { Title } from "@mantine/core";
+import { Button, Title } from "@mantine/core";
+import { useDisclosure } from "@mantine/hooks";
 import {
   type Dashboard,
   type FigureGroup,
@@ -11,67 +12,84 @@ import {
   filterFrom,
   searchOf,
 } from "@shared/api/analysis";
+import { DEMO_KEY } from "@shared/api/housekeeping";
 import type { StudyDetail } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useLocation, useSearch } from "wouter";
+import { Failure } from "../../errors";
+import { SECTIONS } from "../../frame/places";
 import { useTexts } from "../../i18n";
 import { dashboardQuery } from "../../queries";
 import { Counted } from "../../ui/Counted";
 import { kindOf, useOwnSearch, useRememberedKind } from "../../ui/chosenKind";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter } from "../../ui/KindFilter";
-import { Loaded } from "../../ui/Loaded";
+import { BeingDrawn } from "./BeingDrawn";
 import classes from "./DashboardTab.module.css";
 import { FigureCard } from "./FigureCard";
 import { FilterBar } from "./FilterBar";
-import page from "./StudyPage.module.css";
+import { chosenFields, unfiltered } from "./filters";
+import { StudyHead, type StudySection } from "./StudyHead";
 import { SummaryRow } from "./SummaryRow";
 
 /** What the study is about comes first; the summary row above says how far it is. */
 const FIRST = "embodiment";
 const AFTERWARDS = ["tasks", "movement", "answers", "demographics", "progress", "quality"] as const;
+const SECTION = SECTIONS.find(({ section }) => section === "dashboard") as StudySection;
 
 export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
   const [filter, setFilter] = useFilter(study.key);
-  const query = useQuery(dashboardQuery(study.key, filter, FIRST));
+  const found = useQuery(dashboardQuery(study.key, filter, FIRST)).data;
+  const chosen = chosenFields(filter);
+  const [choosing, choice] = useDisclosure(chosen > 0);
   return (
     <>
-      <div className={`${page.toolbar} ${classes.selection}`}>
-        <KindFilter
-          kind={filter.kind}
-          onChange={(kind) => setFilter({ ...filterFrom(new URLSearchParams()), kind })}
-        />
-        {filter.kind === "simulated" && (
-          <div className={classes.simulated}>
-            <Notice tone="sim" title={t("simulated.title")} compact>
-              {t("simulated.body")}
-            </Notice>
-          </div>
-        )}
+      <StudyHead study={study} section={SECTION}>
+        <KindFilter kind={filter.kind} onChange={(kind) => setFilter(unfiltered(kind))} />
+        <Button
+          size="xs"
+          variant={chosen > 0 ? "light" : "default"}
+          leftSection={<Icon name="down" size={15} />}
+          aria-expanded={choosing}
+          onClick={choice.toggle}
+        >
+          {chosen > 0 ? t("figures.chosen", { count: chosen }) : t("figures.choose")}
+        </Button>
         <Counted
-          found={query.data}
-          doing={query.data?.current === false ? t("dashboard.drawing") : null}
+          found={found}
+          running={found?.n_running ?? 0}
+          doing={found?.current === false ? t("dashboard.drawing") : null}
         />
-      </div>
-      <Loaded query={query}>
-        {(dashboard) => (
-          <>
-            <SummaryRow study={study} kind={filter.kind} counts={dashboard} />
-            <FilterBar filter={filter} choices={dashboard.choices} onChange={setFilter} />
-            {dashboard.filter.rows === "all" && (
-              <div className={classes.banner}>
-                <Notice tone="warn" title={t("figures.all")}>
-                  {t("figures.all.body")}
-                </Notice>
-              </div>
-            )}
-            <Groups studyKey={study.key} filter={filter} groups={[FIRST, ...AFTERWARDS]} enabled />
-          </>
-        )}
-      </Loaded>
+      </StudyHead>
+      {/* On the demo lab's pages the strip above says it. */}
+      {filter.kind === "simulated" && study.key !== DEMO_KEY && (
+        <div className={classes.simulated}>
+          <Notice tone="sim" title={t("simulated.title")} compact>
+            {t("simulated.body")}
+          </Notice>
+        </div>
+      )}
+      {choosing && found !== undefined && (
+        <FilterBar filter={filter} choices={found.choices} onChange={setFilter} />
+      )}
+      <SummaryRow
+        study={study}
+        kind={filter.kind}
+        found={found}
+        isBehind={chosen === 0 && found?.current === false}
+      />
+      {found?.filter.rows === "all" && (
+        <div className={classes.banner}>
+          <Notice tone="warn" title={t("figures.all")}>
+            {t("figures.all.body")}
+          </Notice>
+        </div>
+      )}
+      <Groups studyKey={study.key} filter={filter} groups={[FIRST, ...AFTERWARDS]} />
     </>
   );
 }
@@ -80,28 +98,30 @@ interface GroupsProps {
   readonly studyKey: string;
   readonly filter: Filter;
   readonly groups: readonly FigureGroup[];
-  /** Whether the groups above have loaded, so that these may be requested. */
-  readonly enabled: boolean;
 }
 
-/** The first of some groups of figures, followed by the others. */
-function Groups({ studyKey, filter, groups, enabled }: GroupsProps): JSX.Element {
+/** The first of some groups of figures; the others are requested once it is there. */
+function Groups({ studyKey, filter, groups }: GroupsProps): JSX.Element {
   const { t } = useTexts();
   const [group = FIRST, ...others] = groups;
-  const query = useQuery({ ...dashboardQuery(studyKey, filter, group), enabled });
-  const hasLoaded = enabled && !query.isPending && !query.isPlaceholderData;
+  const query = useQuery(dashboardQuery(studyKey, filter, group));
+  const isMain = group === FIRST;
   return (
     <>
       <section className={classes.group}>
-        <Title order={2} className={classes.groupTitle ?? ""}>
+        <Title order={2} className={isMain ? "visually-hidden" : (classes.groupTitle ?? "")}>
           {t(`figures.group.${group}`)}
         </Title>
-        <Loaded query={query}>
-          {(dashboard) => <Figures studyKey={studyKey} dashboard={dashboard} />}
-        </Loaded>
+        {query.data !== undefined ? (
+          <Figures studyKey={studyKey} dashboard={query.data} isMain={isMain} />
+        ) : query.isError ? (
+          <Failure error={query.error} onRetry={() => void query.refetch()} />
+        ) : (
+          <BeingDrawn studyKey={studyKey} kind={filter.kind} group={group} isMain={isMain} />
+        )}
       </section>
-      {others.length > 0 && (
-        <Groups studyKey={studyKey} filter={filter} groups={others} enabled={hasLoaded} />
+      {others.length > 0 && query.data !== undefined && (
+        <Groups studyKey={studyKey} filter={filter} groups={others} />
       )}
     </>
   );
@@ -110,9 +130,10 @@ function Groups({ studyKey, filter, groups, enabled }: GroupsProps): JSX.Element
 interface FiguresProps {
   readonly studyKey: string;
   readonly dashboard: Dashboard;
+  readonly isMain: boolean;
 }
 
-function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
+function Figures({ studyKey, dashboard, isMain }: FiguresProps): JSX.Element {
   const { t } = useTexts();
   // What is shown, which right after a choice is not yet what is requested.
   const { kind, filter, figures } = dashboard;
@@ -129,9 +150,15 @@ function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
     );
   }
   return (
-    <div className={classes.figures}>
+    <div className={isMain ? `${classes.figures} ${classes.main}` : classes.figures}>
       {figures.map((entry) => (
-        <FigureCard key={entry.key} studyKey={studyKey} entry={entry} filter={drawn} />
+        <FigureCard
+          key={entry.key}
+          studyKey={studyKey}
+          entry={entry}
+          filter={drawn}
+          isCompact={isMain}
+        />
       ))}
     </div>
   );

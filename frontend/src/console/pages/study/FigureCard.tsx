@@ -4,7 +4,7 @@ import { savePicture } from "@charts/print";
 import { Button, Title } from "@mantine/core";
 import { analysis, type FigureEntry, type Filter } from "@shared/api/analysis";
 import { Icon } from "@shared/ui/Icon";
-import type { JSX } from "react";
+import { type JSX, useId, useState } from "react";
 import { Link } from "wouter";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
@@ -16,28 +16,51 @@ interface FigureCardProps {
   readonly studyKey: string;
   readonly entry: FigureEntry;
   readonly filter: Filter;
+  /** As high as the window allows for two rows, with the caption in one line until it is read. */
+  readonly isCompact?: boolean;
 }
 
-export function FigureCard({ studyKey, entry, filter }: FigureCardProps): JSX.Element {
+export function FigureCard({
+  studyKey,
+  entry,
+  filter,
+  isCompact = false,
+}: FigureCardProps): JSX.Element {
   const { t } = useTexts();
   const watermark = filter.kind === "simulated" ? t("simulated.watermark") : null;
   const { title, caption, figure } = entry;
+  const [isRead, setIsRead] = useState(false);
+  const captionId = useId();
+  const look = [
+    classes.figure,
+    ...(entry.wide ? [classes.wide] : []),
+    ...(isCompact ? [classes.compact] : []),
+  ].join(" ");
   return (
-    <figure className={entry.wide ? `${classes.figure} ${classes.wide}` : classes.figure}>
+    <figure className={look}>
       <Title order={3}>{title}</Title>
       {figure === null ? (
         <p className={classes.missing}>{entry.empty}</p>
       ) : (
-        <Figure
-          figure={figure}
-          label={title}
-          watermark={watermark}
-          loading={t("dashboard.loading")}
-          failed={t("dashboard.failed")}
-          lazy
-        />
+        <div className={isCompact ? classes.plot : undefined}>
+          <Figure
+            figure={figure}
+            label={title}
+            watermark={watermark}
+            loading={t("dashboard.loading")}
+            failed={t("dashboard.failed")}
+            fills={isCompact}
+            lazy
+          />
+        </div>
       )}
-      <figcaption className={classes.caption}>{caption}</figcaption>
+      <figcaption
+        id={captionId}
+        className={classes.caption}
+        data-collapsed={(isCompact && !isRead) || undefined}
+      >
+        {caption}
+      </figcaption>
       {figure !== null && (
         <div className={classes.foot}>
           <SaveRow
@@ -48,6 +71,19 @@ export function FigureCard({ studyKey, entry, filter }: FigureCardProps): JSX.El
               savePicture(figure, { title, caption, watermark }, entry.wide, format, name)
             }
           />
+          {isCompact && (
+            <Button
+              size="compact-xs"
+              variant="subtle"
+              ml="auto"
+              aria-expanded={isRead}
+              aria-controls={captionId}
+              aria-label={t("figures.caption.of", { title })}
+              onClick={() => setIsRead(!isRead)}
+            >
+              {t("figures.caption")}
+            </Button>
+          )}
           {entry.measure !== null && (
             <Button
               component={Link}

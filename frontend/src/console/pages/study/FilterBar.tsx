@@ -1,9 +1,10 @@
 /** The filters of the dashboard in a row of fields; every choice is part of the page's address. */
 import { Button, MultiSelect, SegmentedControl, Select, TextInput } from "@mantine/core";
-import { type Filter, type FilterChoices, filterFrom } from "@shared/api/analysis";
+import type { Filter, FilterChoices } from "@shared/api/analysis";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import classes from "./DashboardTab.module.css";
+import { chosenFields, unfiltered } from "./filters";
 
 /** The name of the configuration's body among the choices (`OWN_BODY` in `material.py`). */
 const OWN_BODY = "configuration";
@@ -17,7 +18,6 @@ interface FilterBarProps {
 export function FilterBar({ filter, choices, onChange }: FilterBarProps): JSX.Element {
   const { t } = useTexts();
   const change = (part: Partial<Filter>): void => onChange({ ...filter, ...part });
-  const none: Filter = { ...filterFrom(new URLSearchParams()), kind: filter.kind };
   return (
     <fieldset className={classes.filters} aria-label={t("figures.filter")}>
       <MultiSelect
@@ -95,8 +95,8 @@ export function FilterBar({ filter, choices, onChange }: FilterBarProps): JSX.El
           }))}
         />
       </div>
-      {JSON.stringify(none) !== JSON.stringify(filter) && (
-        <Button size="xs" variant="subtle" onClick={() => onChange(none)}>
+      {chosenFields(filter) > 0 && (
+        <Button size="xs" variant="subtle" onClick={() => onChange(unfiltered(filter.kind))}>
           {t("figures.clear")}
         </Button>
       )}

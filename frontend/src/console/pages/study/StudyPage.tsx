@@ -1,13 +1,10 @@
 /** One study: its design, its ledger, its sessions, their results, and its files. */
-import { Button, Title } from "@mantine/core";
+import { Button } from "@mantine/core";
 import { versions } from "@shared/api/drafts";
 import type { StudyDetail } from "@shared/api/types";
-import { inLanguage } from "@shared/text";
-import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
-import { type ComponentType, type JSX, lazy, Suspense, useState } from "react";
-import { Link } from "wouter";
+import { type ComponentType, type JSX, lazy, Suspense } from "react";
 import { useAccount } from "../../account";
 import { Failure } from "../../errors";
 import { isAllowed, SECTIONS, type SectionName } from "../../frame/places";
@@ -15,13 +12,11 @@ import { useTexts } from "../../i18n";
 import { usePermissions } from "../../permissions";
 import { studyQuery } from "../../queries";
 import { Loaded, Waiting } from "../../ui/Loaded";
-import { useTitle } from "../../ui/page";
 import { NoPermission } from "../NoPermission";
 import { LedgerTab } from "./LedgerTab";
-import { NewSession } from "./NewSession";
 import { Overview } from "./Overview";
 import { SessionsTab } from "./SessionsTab";
-import classes from "./StudyPage.module.css";
+import { StudyHead, type StudySection } from "./StudyHead";
 
 // Loaded when they are opened, as results are read by fewer people than run sessions.
 const PreregistrationTab = lazy(async () => ({
@@ -67,8 +62,9 @@ const CONTENT: Readonly<Record<SectionName, ComponentType<{ readonly study: Stud
   suggestions: SuggestionsTab,
 };
 
-type StudySection = (typeof SECTIONS)[number];
 const OVERVIEW: StudySection = SECTIONS[0];
+/** Its choices stand in the row of its title. */
+const HEADS_ITSELF: SectionName = "dashboard";
 
 interface StudyPageProps {
   readonly studyKey: string;
@@ -99,53 +95,13 @@ function Study({ study, section }: StudyProps): JSX.Element {
   const Content = isTheirs ? CONTENT[section.section] : NoPermission;
   return (
     <div data-page={section.section === "dashboard" ? "wide" : undefined}>
-      <Head study={study} section={section} />
+      {!(isTheirs && section.section === HEADS_ITSELF) && (
+        <StudyHead study={study} section={section} />
+      )}
       {study.archived_at !== null && <Archived studyKey={study.key} />}
       <Suspense fallback={<Waiting />}>
         <Content study={study} />
       </Suspense>
-    </div>
-  );
-}
-
-/** The overview is titled with the study, every other page with its own name and the study above. */
-function Head({ study, section }: StudyProps): JSX.Element {
-  const { t, language } = useTexts();
-  const [joining, setJoining] = useState(false);
-  const can = usePermissions();
-  const title = study.protocol === null ? study.title : inLanguage(study.protocol.title, language);
-  const isOverview = section.section === "overview";
-  useTitle(isOverview ? title : `${t(section.name)} · ${title}`);
-  return (
-    <div className={classes.head}>
-      <div>
-        {!isOverview && (
-          <Link href={`/studies/${study.key}/overview`} className={classes.crumbs ?? ""}>
-            {title}
-          </Link>
-        )}
-        <Title order={1}>{isOverview ? title : t(section.name)}</Title>
-        {isOverview && (
-          <div className={classes.meta}>
-            <span>{study.key}</span>
-            <span>{t("study.version", { version: study.version })}</span>
-            <span>
-              <Icon name={study.frozen ? "lock" : "document"} size={15} />
-              {t(study.frozen ? "study.frozenLong" : "study.openLong")}
-            </span>
-          </div>
-        )}
-      </div>
-      {can("run") && section.group === "run" && (
-        <Button
-          leftSection={<Icon name="add" size={18} />}
-          disabled={study.archived_at !== null}
-          onClick={() => setJoining(true)}
-        >
-          {t("join.open")}
-        </Button>
-      )}
-      <NewSession study={study} opened={joining} onClose={() => setJoining(false)} />
     </div>
   );
 }

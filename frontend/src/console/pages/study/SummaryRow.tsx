@@ -12,34 +12,45 @@ import classes from "./SummaryRow.module.css";
 interface SummaryRowProps {
   readonly study: StudyDetail;
   readonly kind: DataKind;
-  readonly counts: { readonly n_completed: number; readonly n_not_valid: number };
+  /** What is drawn; undefined until something is. */
+  readonly found: { readonly n_completed: number; readonly n_not_valid: number } | undefined;
+  /** Newer sessions are being drawn: until then the numbers are those of what is drawn. */
+  readonly isBehind?: boolean;
 }
 
-export function SummaryRow({ study, kind, counts }: SummaryRowProps): JSX.Element {
+export function SummaryRow({ study, kind, found, isBehind = false }: SummaryRowProps): JSX.Element {
   const { t } = useTexts();
   const ledger = useQuery(ledgerQuery(study.key, kind)).data;
   const declared = useQuery(preregistrationQuery(study.key, kind)).data;
   const statistics = useQuery(statisticsQuery(study.key, kind)).data;
   const planned = declared?.declaration?.planned_n ?? ledger?.slots.length ?? null;
-  const valid = counts.n_completed - counts.n_not_valid;
+  const valid = found === undefined ? null : found.n_completed - found.n_not_valid;
+  const finished = ledger?.slots.filter(({ state }) => state === "completed").length ?? 0;
   return (
     <section className={classes.row} aria-label={t("summary.label")}>
       <Tile name={t("summary.n")} to={`/studies/${study.key}/ledger`}>
-        <strong>{valid}</strong>{" "}
-        {planned !== null && planned > 0 && t("summary.ofPlanned", { planned })}
+        <strong>{valid ?? "…"}</strong>{" "}
+        {isBehind && finished > (valid ?? 0)
+          ? t("summary.drawn", { finished })
+          : planned !== null && planned > 0 && t("summary.ofPlanned", { planned })}
       </Tile>
       <Tile name={t("summary.balance")} to={`/studies/${study.key}/ledger`}>
         {ledger === undefined ? "…" : <Balance ledger={ledger} />}
       </Tile>
       <Tile name={t("summary.quality")} to={`/studies/${study.key}/sessions`}>
-        <strong>{valid}</strong> {t("summary.valid", { count: counts.n_completed })}
+        <strong>{valid ?? "…"}</strong>{" "}
+        {found !== undefined && t("summary.valid", { count: found.n_completed })}
       </Tile>
       <Tile
         name={t(declared?.result == null ? "summary.effect" : "summary.primary")}
         to={`/studies/${study.key}/${declared?.result == null ? "statistics" : "preregistration"}`}
         wide
       >
-        <MainEffect primary={declared?.result ?? null} measures={statistics?.measures ?? null} />
+        <MainEffect
+          primary={declared?.result ?? null}
+          measures={statistics?.measures ?? null}
+          isCurrent={statistics?.current ?? false}
+        />
       </Tile>
     </section>
   );
@@ -88,16 +99,20 @@ interface MainEffectProps {
   readonly primary: PrimaryResult | null;
   /** Null until they have been computed. */
   readonly measures: readonly Measure[] | null;
+  /** Of all sessions: until then, what is missing may be there soon. */
+  readonly isCurrent: boolean;
 }
 
 /** The preregistered test's words, else the first score's effect, which is exploratory. */
-function MainEffect({ primary, measures }: MainEffectProps): JSX.Element {
+function MainEffect({ primary, measures, isCurrent }: MainEffectProps): JSX.Element {
   const { t, language } = useTexts();
   if (primary !== null) return <>{primary.sentence}</>;
   if (measures === null) return <>…</>;
   const [first] = measures.filter(({ effects }) => effects.length > 0);
   const effect = first?.effects[0];
-  if (first === undefined || effect === undefined) return <>{t("summary.effect.none")}</>;
+  if (first === undefined || effect === undefined) {
+    return <>{isCurrent ? t("summary.effect.none") : "…"}</>;
+  }
   const signed = (value: number) => number(value, language).replace("-", "−");
   return (
     <>

@@ -137,7 +137,7 @@ function Summary({ study, kind, dashboard }: SummaryProps): JSX.Element {
   const statistics = useQuery(statisticsQuery(study.key, kind));
   return (
     <div className={classes.page}>
-      <SummaryRow study={study} kind={kind} counts={dashboard} />
+      <SummaryRow study={study} kind={kind} found={dashboard} />
       {dashboard.simulated && (
         <Notice tone="sim" title={t("simulated.title")}>
           {t("simulated.body")}

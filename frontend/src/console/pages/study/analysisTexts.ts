@@ -1,5 +1,7 @@
 /** Texts of a study's results: filters and files of its figures, and its tests. */
 export const analysisEn = {
+  "figures.choose": "Filter",
+  "figures.chosen": "Filter ({{count}})",
   "figures.filter": "Choose what to show",
   "figures.participants": "Participants",
   "figures.participants.all": "All participants",
@@ -23,6 +25,8 @@ export const analysisEn = {
   "figures.group.tasks": "Tasks and contacts",
   "figures.group.movement": "Movement and latency",
   "figures.group.quality": "Quality and exclusions",
+  "figures.caption": "How to read it",
+  "figures.caption.of": "How to read it: “{{title}}”",
   "figures.save": "Save “{{title}}”",
   "figures.png": "PNG",
   "figures.svg": "SVG",
@@ -78,6 +82,7 @@ export const analysisEn = {
   "summary.label": "Summary",
   "summary.n": "Participants",
   "summary.ofPlanned": "of {{planned}} planned",
+  "summary.drawn": "drawn of {{finished}} finished",
   "summary.balance": "Balance",
   "summary.balance.each_one": "the only order",
   "summary.balance.each_other": "each of {{count}} orders",
@@ -86,7 +91,7 @@ export const analysisEn = {
   "summary.valid": "of {{count}} valid",
   "summary.effect": "Main effect (exploratory)",
   "summary.primary": "Preregistered test",
-  "summary.effect.none": "Two participants who count are needed.",
+  "summary.effect.none": "At least two valid participants are needed.",
   "summary.effect.interval": "[{{low}}, {{high}}], 95 % interval",
   "glance.title": "At a glance",
   "glance.about":
@@ -105,6 +110,8 @@ export const analysisEn = {
 } as const;
 
 export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
+  "figures.choose": "Filter",
+  "figures.chosen": "Filter ({{count}})",
   "figures.filter": "Auswählen, was gezeigt wird",
   "figures.participants": "Teilnehmende",
   "figures.participants.all": "Alle Teilnehmenden",
@@ -128,6 +135,8 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "figures.group.tasks": "Aufgaben und Kontakte",
   "figures.group.movement": "Bewegung und Latenz",
   "figures.group.quality": "Qualität und Ausschlüsse",
+  "figures.caption": "Lesehilfe",
+  "figures.caption.of": "Lesehilfe: „{{title}}“",
   "figures.save": "„{{title}}“ speichern",
   "figures.png": "PNG",
   "figures.svg": "SVG",
@@ -183,6 +192,7 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "summary.label": "Zusammenfassung",
   "summary.n": "Teilnehmende",
   "summary.ofPlanned": "von {{planned}} geplanten",
+  "summary.drawn": "von {{finished}} fertigen gezeichnet",
   "summary.balance": "Ausbalancierung",
   "summary.balance.each_one": "die einzige Reihenfolge",
   "summary.balance.each_other": "jede der {{count}} Reihenfolgen",
@@ -191,7 +201,7 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "summary.valid": "von {{count}} gültig",
   "summary.effect": "Haupteffekt (explorativ)",
   "summary.primary": "Präregistrierter Test",
-  "summary.effect.none": "Zwei Teilnehmende, die zählen, sind nötig.",
+  "summary.effect.none": "Mindestens zwei gültige Teilnehmende sind nötig.",
   "summary.effect.interval": "[{{low}}, {{high}}], 95-%-Intervall",
   "glance.title": "Auf einen Blick",
   "glance.about":

@@ -249,7 +249,12 @@ export const studyEn = {
   "ledger.empty.body": "It is created with the first session of this kind.",
   "dashboard.sessions_one": "from {{count}} valid session",
   "dashboard.sessions_other": "from {{count}} valid sessions",
+  "dashboard.running": ", {{count}} still open",
   "dashboard.drawing": "updating with newer data",
+  "dashboard.drawing.group": "Drawing the figures “{{group}}”.",
+  "dashboard.drawing.of":
+    "So far {{completed}} sessions are completed and {{open}} are open. The first figures take longest.",
+  "dashboard.drawing.since": "{{seconds}} s",
   "dashboard.empty.title": "No figures yet",
   "dashboard.empty.body": "Figures appear as soon as a session of this kind is completed.",
   "dashboard.loading": "Drawing",
@@ -335,7 +340,12 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "ledger.empty.body": "Er wird mit der ersten Sitzung dieser Art angelegt.",
   "dashboard.sessions_one": "aus {{count}} gültigen Sitzung",
   "dashboard.sessions_other": "aus {{count}} gültigen Sitzungen",
+  "dashboard.running": ", {{count}} noch offen",
   "dashboard.drawing": "wird mit neueren Daten aktualisiert",
+  "dashboard.drawing.group": "Die Abbildungen „{{group}}“ werden gezeichnet.",
+  "dashboard.drawing.of":
+    "Bisher sind {{completed}} Sitzungen abgeschlossen und {{open}} offen. Die ersten Abbildungen dauern am längsten.",
+  "dashboard.drawing.since": "{{seconds}} s",
   "dashboard.empty.title": "Noch keine Abbildungen",
   "dashboard.empty.body":
     "Abbildungen erscheinen, sobald eine Sitzung dieser Art abgeschlossen ist.",
