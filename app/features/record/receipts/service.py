@@ -12,7 +12,7 @@ from app.database import referenced_row
 from app.features.record.doubts import Doubt, doubts_of
 from app.features.record.receipts.completions import CompletionReceipt, completion_receipts
 from app.features.record.receipts.latencies import LatencyReceipt, latency_receipts
-from app.features.record.receipts.streams import StreamReceipt, stream_receipts
+from app.features.record.receipts.streams import StreamReceipt, Tallies, stream_receipts
 from app.features.record.sessions import ChainCheck, events_of, state_of, verify_chain
 from app.features.record.telemetry import abilities_of
 from app.models import ClientReport, Phase, Study, TelemetryBatch, TelemetryChunk, TelemetryStream
@@ -72,17 +72,20 @@ class SessionReceipt:
         return asdict(self)
 
 
-def receipt_of(db: Session, session_id: str, *, blinded: bool = False) -> SessionReceipt:
+def receipt_of(
+    db: Session, session_id: str, *, blinded: bool = False, tallies: Tallies | None = None
+) -> SessionReceipt:
     """Count, verify and derive everything from the record; raises NotFound for an unknown session.
 
     `blinded`: as readers may see it who must not know the condition. It has no latencies, neither
     hashes of the avatar's frames nor how many of them were flagged, and while a phase runs no
     stream of reports: a report follows every contact, which is late by the latency.
 
-    This takes about a second per ten minutes of session.
+    This takes about a second per ten minutes of session. `tallies`: the streams that were counted
+    in this transaction already.
     """
     session = session_by_id(db, session_id)
-    streams = stream_receipts(db, session_id)
+    streams = stream_receipts(db, session_id, tallies)
     if blinded:
         runs = state_of(session).phase is not None
         shown = (one for one in streams if not (runs and one.stream == REPORT_STREAM))

@@ -1,7 +1,7 @@
 """Count the stored frames of each stream by decoding every chunk, without relying on counters."""
 
 import hashlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Self
 
@@ -11,7 +11,13 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.record.sessions import canonical
-from app.features.record.telemetry import DamagedChunkError, Frames, decode_piece, iter_pieces
+from app.features.record.telemetry import (
+    DamagedChunkError,
+    Frames,
+    Piece,
+    decode_piece,
+    iter_pieces,
+)
 from app.models import ClientReport, TelemetryStream
 from app.wire import MAX_TIME_S, PARTICIPANT_STREAMS, REPORT_STREAM
 
@@ -88,22 +94,66 @@ class _Count:
             self.gaps.append((self.next_seq, sent))
 
 
-def stream_receipts(db: Session, session_id: str) -> tuple[StreamReceipt, ...]:
-    """Return a receipt for every stream of a session, sorted by epoch."""
+@dataclass
+class StreamTally:
+    """Counts the pieces of one stream in one epoch, given in order of seq."""
+
+    count: _Count = field(default_factory=_Count)
+    digest: "hashlib._Hash" = field(default_factory=hashlib.sha256)
+
+    def add(self, piece: Piece, frames: Frames | None) -> None:
+        """Count a piece with its decoded frames, None if it is damaged."""
+        self.count.found(piece.seq_first, piece.frame_count, readable=frames is not None)
+        if frames is not None:
+            self.count.timed(frames.times_s)
+            self.digest.update(frame_bytes(frames, piece.phase_id))
+
+
+class Tallies:
+    """Counts the streams of a session while somebody else reads all of their frames.
+
+    Opening the chunks takes most of a receipt's time, so whoever reads the frames anyway, in the
+    same transaction, can let them be counted on the way.
+    """
+
+    def __init__(self) -> None:
+        self._streams: dict[tuple[str, int], StreamTally] = {}
+
+    def of(self, stream: str, epoch: int) -> Callable[[Piece, Frames | None], None]:
+        """Return what must be told every piece of a stream and epoch, as `iter_frames` does."""
+
+        def told(piece: Piece, frames: Frames | None) -> None:
+            # Created with the first piece: of a stream that nobody reads nothing is known.
+            self._streams.setdefault((stream, epoch), StreamTally()).add(piece, frames)
+
+        return told
+
+    def found(self, stream: str, epoch: int) -> StreamTally | None:
+        """Return the counts of a stream and epoch; None if nothing of it was read."""
+        return self._streams.get((stream, epoch))
+
+
+def stream_receipts(
+    db: Session, session_id: str, tallies: Tallies | None = None
+) -> tuple[StreamReceipt, ...]:
+    """Return a receipt for every stream of a session, sorted by epoch.
+
+    Streams that `tallies` has counted are not read again.
+    """
     rows = db.scalars(
         select(TelemetryStream)
         .where(TelemetryStream.session_id == session_id)
         .order_by(TelemetryStream.epoch, TelemetryStream.stream)
     ).all()
-    return tuple(_stream_receipt(db, row) for row in rows)
+    known = tallies or Tallies()
+    return tuple(
+        _stream_receipt(row, known.found(row.stream, row.epoch) or _counted(db, row))
+        for row in rows
+    )
 
 
-def _stream_receipt(db: Session, row: TelemetryStream) -> StreamReceipt:
-    count, digest = _Count(), hashlib.sha256()
-    for piece in (
-        _reports(db, row, count) if row.stream == REPORT_STREAM else _frames(db, row, count)
-    ):
-        digest.update(piece)
+def _stream_receipt(row: TelemetryStream, tally: StreamTally) -> StreamReceipt:
+    count = tally.count
     sent = max(row.produced, row.next_seq, count.next_seq)
     count.until(sent)
     return StreamReceipt(
@@ -116,20 +166,22 @@ def _stream_receipt(db: Session, row: TelemetryStream) -> StreamReceipt:
         damaged=count.damaged,
         flagged=row.frames_flagged,
         backwards=count.backwards,
-        sha256=digest.hexdigest(),
+        sha256=tally.digest.hexdigest(),
     )
 
 
-def _frames(db: Session, row: TelemetryStream, count: _Count) -> Iterator[bytes]:
+def _counted(db: Session, row: TelemetryStream) -> StreamTally:
+    tally = StreamTally()
+    if row.stream == REPORT_STREAM:
+        _count_reports(db, row, tally)
+        return tally
     for piece in iter_pieces(db, row.session_id, row.stream, row.epoch):
         try:
             frames = decode_piece(piece)
         except DamagedChunkError:
-            count.found(piece.seq_first, piece.frame_count, readable=False)
-            continue
-        count.found(piece.seq_first, piece.frame_count)
-        count.timed(frames.times_s)
-        yield frame_bytes(frames, piece.phase_id)
+            frames = None
+        tally.add(piece, frames)
+    return tally
 
 
 def frame_bytes(frames: Frames, phase_id: int) -> bytes:
@@ -147,12 +199,12 @@ def frame_bytes(frames: Frames, phase_id: int) -> bytes:
     return np.hstack(list(columns)).tobytes()
 
 
-def _reports(db: Session, row: TelemetryStream, count: _Count) -> Iterator[bytes]:
+def _count_reports(db: Session, row: TelemetryStream, tally: StreamTally) -> None:
     reports = db.execute(
         select(ClientReport.seq, ClientReport.payload)
         .where(ClientReport.session_id == row.session_id, ClientReport.epoch == row.epoch)
         .order_by(ClientReport.seq)
     )
     for seq, payload in reports:
-        count.found(seq, 1)
-        yield canonical(payload).encode()
+        tally.count.found(seq, 1)
+        tally.digest.update(canonical(payload).encode())

@@ -3,6 +3,7 @@
 from app.features.record.telemetry.encoding import DamagedChunkError, Frames
 from app.features.record.telemetry.fold import Folder
 from app.features.record.telemetry.frames import (
+    Piece,
     concatenate,
     decode_piece,
     epochs_of,
@@ -44,6 +45,7 @@ __all__ = [
     "LiveTelemetry",
     "LossContent",
     "Outcome",
+    "Piece",
     "ProbeContent",
     "Summariser",
     "TelemetryWriter",

@@ -1,7 +1,7 @@
 """Read movement back, merging chunks and the batches that are not folded yet."""
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from heapq import merge
 
 import numpy as np
@@ -32,20 +32,25 @@ def iter_frames(
     phase_id: int | None = None,
     *,
     since_s: float | None = None,
+    told: Callable[[Piece, Frames | None], None] | None = None,
 ) -> Iterator[tuple[int, Frames]]:
     """Yield frames of about a second at a time in seq order, each with its phase_id.
 
     `phase_id` restricts them to one phase, and `since_s` leaves out chunks that end before that
     client time. A damaged chunk is left out too, so that it does not make the whole session
-    unreadable: the session's receipt counts its frames as missing.
+    unreadable: the session's receipt counts its frames as missing. `told` is given every piece with
+    its frames, a damaged one with None.
     """
     for piece in iter_pieces(db, session_id, stream, epoch, phase_id, since_s=since_s):
         try:
             frames = decode_piece(piece)
         except DamagedChunkError as error:
             log.warning("%s of %s, seq %d: %s", stream, session_id, piece.seq_first, error)
-            continue
-        yield piece.phase_id, frames
+            frames = None
+        if told is not None:
+            told(piece, frames)
+        if frames is not None:
+            yield piece.phase_id, frames
 
 
 def iter_pieces(

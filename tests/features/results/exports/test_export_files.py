@@ -2,6 +2,7 @@
 
 import hashlib
 import io
+import json
 import os
 import time
 import zipfile
@@ -15,7 +16,7 @@ from sqlalchemy import select
 from app.features.results.exports.export_queue import ExportQueue
 from app.features.results.exports.jobs import KEEP_FOR
 from app.features.results.exports.writing.service import study_archive
-from app.models import CopyMade
+from app.models import CopyMade, TelemetryChunk
 from app.wire import BODY_STREAMS
 from tests.api.people import sign_in
 from tests.features.builders import STUDY, SessionSpec, build_session
@@ -121,6 +122,24 @@ def test_tables_without_movement_are_those_of_the_whole_export(small_site: Lab) 
     assert left_out == {"samples", "receipts"}
     for name in files[False].keys() - {"README.txt"}:
         assert files[False][name] == files[True][name], name
+
+
+def test_receipts_count_what_was_written_as_if_they_had_read_it(small_site: Lab) -> None:
+    """The receipts of an export, damaged chunks included, are those that read every frame anew."""
+    client = small_site.operator
+    with small_site.database.writing() as db:
+        second = select(TelemetryChunk).order_by(TelemetryChunk.seq_first.desc()).limit(1)
+        damaged = db.scalars(second).one()
+        damaged.data = damaged.data[:-1] + b"?"
+    done = _until(client, _order(client)["id"], "ready", "failed")
+    data = client.get(f"/api/exports/{done['id']}/file").content
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        names = [name for name in archive.namelist() if name.startswith("receipts/")]
+        exported = {one["session_id"]: one for one in map(json.loads, map(archive.read, names))}
+    assert len(exported) == 2
+    for session_id, receipt in exported.items():
+        assert ok(client.get(f"/api/sessions/{session_id}/receipt")) == receipt
+    assert sum(one["damaged"] for it in exported.values() for one in it["streams"]) > 0
 
 
 def test_an_export_of_one_session_is_visible_to_its_owner_only(small_site: Lab) -> None:

@@ -16,7 +16,7 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies import instrument_for, study_by_key
 from app.features.people.audit import TrailHead, head_of
-from app.features.record.receipts import receipt_of
+from app.features.record.receipts import Tallies, receipt_of
 from app.features.record.telemetry import epochs_of
 from app.features.results.analysis.codebook import codebook_frame
 from app.features.results.analysis.questions import WideColumn, wide_table
@@ -158,7 +158,10 @@ class Contents:
         self.hidden = hidden_sessions(self.db, study_by_key(self.db, self.study_key))
 
     def members(self) -> Iterator[Member]:
-        """Yield tables, codebook, each session's frames and receipt, and last the README."""
+        """Yield tables, codebook, each session's frames and receipt, and last the README.
+
+        Each member must be read to its end before the next: a receipt counts what was written.
+        """
         sessions = self._table("sessions", sessions_table)
         self.sessions = len(sessions)
         study = study_by_key(self.db, self.study_key)
@@ -181,7 +184,6 @@ class Contents:
         for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
             if self.movement:
                 yield from self._movement(code, session_id, bool(simulated), avatar)
-                yield self._member(receipt_path(code, session_id), self._receipt(session_id))
         # Imported answers stay apart from the tables; a participant's own copy has only sessions.
         if self.kind in ("people", "all") and self.only is None:
             for name, body in import_files(self.db, study):
@@ -195,7 +197,10 @@ class Contents:
         simulated: bool,  # noqa: FBT001 - a column of the table
         avatar: str,
     ) -> Iterator[Member]:
-        """Yield what was recorded of a session's movement, the participant's and that of others."""
+        """Yield what was recorded of a session's movement, and the receipt of the session.
+
+        The movement is the participant's and that of others.
+        """
         samples = SampleFile(
             *(self.db, session_id, simulated, avatar), blinded=session_id in self.hidden
         )
@@ -215,6 +220,8 @@ class Contents:
         shown = () if session_id in self.hidden else road_records(self.db, session_id)
         for phase_id, part, record in shown:
             yield self._member(road_path(code, session_id, phase_id, part), iter([record]))
+        receipt = self._receipt(session_id, samples.tallies)
+        yield self._member(receipt_path(code, session_id), receipt)
 
     def _table(
         self, name: str, table: Callable[[Session, str, Kind], pd.DataFrame]
@@ -263,9 +270,11 @@ class Contents:
     def _has_fingers(self, session_id: str) -> bool:
         return any(epochs_of(self.db, session_id, stream) for stream in FINGER_STREAMS)
 
-    def _receipt(self, session_id: str) -> Iterator[bytes]:
+    def _receipt(self, session_id: str, tallies: Tallies) -> Iterator[bytes]:
         """Yield the receipt of a session as JSON, computed in the transaction of this export."""
-        receipt = receipt_of(self.db, session_id, blinded=session_id in self.hidden)
+        receipt = receipt_of(
+            self.db, session_id, blinded=session_id in self.hidden, tallies=tallies
+        )
         yield json.dumps(receipt.as_json(), indent=2).encode() + b"\n"
 
     def _member(self, path: str, pieces: Iterator[bytes]) -> Member:

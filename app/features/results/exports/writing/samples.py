@@ -6,13 +6,14 @@ lists are CSV rows. These files contain only numbers and fixed words, so no cell
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 from sqlalchemy.orm import Session
 
+from app.features.record.receipts import Tallies
 from app.features.record.telemetry import epochs_of, iter_frames
 from app.features.results.analysis.codebook import columns_of
 from app.features.results.exports.writing.pairing import Rows, Side, paired_rows
@@ -120,7 +121,8 @@ class SampleFile:
     """The samples file of a session, read from the database while it is written.
 
     `blinded`: without the avatar's frames, which lag behind the participant's by the latency.
-    `fingers`: of the fingers instead of the body.
+    `fingers`: of the fingers instead of the body. `tallies` count the frames that are written, for
+    the session's receipt.
     """
 
     db: Session
@@ -129,6 +131,7 @@ class SampleFile:
     avatar: str
     blinded: bool = False
     fingers: bool = False
+    tallies: Tallies = field(default_factory=Tallies)
 
     def pieces(self) -> Iterator[bytes]:
         """Yield the file in pieces of about a second of movement."""
@@ -137,7 +140,11 @@ class SampleFile:
         start = f"{'true' if self.simulated else 'false'},{self.avatar},"
         for epoch in self._epochs():
             target, actual = (
-                iter_frames(self.db, self.session_id, stream, epoch) for stream in self._streams
+                iter_frames(
+                    *(self.db, self.session_id, stream, epoch),
+                    told=self.tallies.of(stream, epoch),
+                )
+                for stream in self._streams
             )
             if self.blinded:
                 actual = iter(())
