@@ -86,6 +86,7 @@ CONSOLE = (
         WINDOW_PX,
     ),
     Page("console-protocol-light", "Protocol", "What every session follows, step by step."),
+    Page("pilot-power", "Pilot", "How many participants the test needs, if people are as assumed."),
     Page("study-versions", "Versions", "What changed, and whether balance starts again."),
     Page("suggestions", "Suggestions", "What experts would change."),
     Page("editor-problem", "Editor", "Form and text side by side; a problem leads to its line."),

@@ -9,14 +9,22 @@ import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { type CSSProperties, type JSX, useState } from "react";
 import { changeWords } from "../avatarChanges/words";
 import { useTexts } from "../i18n";
+import { useWalksBack } from "../pilot/walksBack";
 import { Loaded } from "../ui/Loaded";
 import { Order } from "../ui/Order";
 import { ScrollBox } from "../ui/tables";
 import classes from "./DryRun.module.css";
 import type { Draft } from "./useDraft";
 
-export function DryRun({ draft }: { readonly draft: Draft }): JSX.Element {
+interface DryRunProps {
+  readonly draft: Draft;
+  /** The study that gets a new version; null for a new study, of which there is no pilot. */
+  readonly studyKey: string | null;
+}
+
+export function DryRun({ draft, studyKey }: DryRunProps): JSX.Element {
   const { t, language } = useTexts();
+  const walksBackMin = useWalksBack(studyKey, draft.check?.content_hash ?? null);
   const [slot, setSlot] = useState(0);
   const [chosenLanguage, setChosenLanguage] = useState<string>(language);
   const usable = draft.upToDate && draft.check?.ok === true;
@@ -67,9 +75,11 @@ export function DryRun({ draft }: { readonly draft: Draft }): JSX.Element {
             />
             <p className={classes.total}>
               {t("dryRun.total", {
-                total: minutes(timeline.total_s, language),
+                total: minutes(timeline.total_s + 60 * (walksBackMin ?? 0), language),
                 planned: minutes(timeline.planned_s, language),
               })}
+              {walksBackMin !== null &&
+                `. ${t("pilot.walksBack", { back: number(walksBackMin, language, 1) })}`}
             </p>
           </div>
           <Bars timeline={timeline} />

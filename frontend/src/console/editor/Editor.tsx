@@ -78,7 +78,7 @@ export function Editor(props: EditorProps): JSX.Element {
           <TextHalf draft={draft} initial={initial} />
         </Tabs.Panel>
         <Tabs.Panel value="dryRun" className={classes.page ?? ""}>
-          {tab === "dryRun" && <DryRun draft={draft} />}
+          {tab === "dryRun" && <DryRun draft={draft} studyKey={studyKey} />}
         </Tabs.Panel>
         <Tabs.Panel value="changes" className={classes.page ?? ""}>
           {tab === "changes" && studyKey !== null && <Changes draft={draft} studyKey={studyKey} />}

@@ -85,6 +85,13 @@ export const SECTIONS = [
     permission: "compare",
   },
   {
+    section: "pilot",
+    group: "design",
+    icon: "body",
+    name: "study.tab.pilot",
+    permission: "compare",
+  },
+  {
     section: "versions",
     group: "design",
     icon: "redo",

@@ -5,6 +5,7 @@ export const HELPS: readonly (readonly [address: RegExp, key: string])[] = [
   [/^\/sessions\//, "operators-tour"],
   [/^\/studies\/[^/]+\/participants/, "participants-rights"],
   [/^\/studies\/[^/]+\/preregistration/, "preregistration"],
+  [/^\/studies\/[^/]+\/pilot/, "pilot"],
   [/^\/studies\/[^/]+\/statistics/, "statistics"],
   [/^\/studies\/[^/]+\/(export|dashboard)/, "data-dictionary"],
   [/^\/(new|studies\/[^/]+\/(edit|protocol|versions))/, "study-configs"],

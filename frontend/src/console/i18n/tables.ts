@@ -42,6 +42,7 @@ import { validityDe, validityEn } from "../pages/study/validityTexts";
 import { versionsDe, versionsEn } from "../pages/study/versionTexts";
 import { trackersDe, trackersEn } from "../pages/trackers/texts";
 import { performerDe, performerEn } from "../performer/texts";
+import { pilotDe, pilotEn } from "../pilot/texts";
 import { preregistrationDe, preregistrationEn } from "../preregistration/texts";
 import { replayDe, replayEn } from "../replay/texts";
 import { rightsDe, rightsEn } from "../rights/texts";
@@ -102,6 +103,7 @@ export const allEn = {
   ...eventsEn,
   ...outageEn,
   ...importsEn,
+  ...pilotEn,
   ...preregistrationEn,
 };
 export const allDe: Readonly<Record<keyof typeof allEn, string>> = {
@@ -153,6 +155,7 @@ export const allDe: Readonly<Record<keyof typeof allEn, string>> = {
   ...eventsDe,
   ...outageDe,
   ...importsDe,
+  ...pilotDe,
   ...preregistrationDe,
 };
 

@@ -12,6 +12,7 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { savedAvatarsQuery } from "../../avatarEditor/tryout/source";
 import { type Key, useTexts } from "../../i18n";
+import { useWalksBack } from "../../pilot/walksBack";
 import classes from "./Overview.module.css";
 import { orderCount } from "./orderCount";
 import { Procedure } from "./Procedure";
@@ -44,6 +45,7 @@ interface FullOverviewProps {
 
 function FullOverview({ study, protocol }: FullOverviewProps): JSX.Element {
   const { t, language } = useTexts();
+  const walksBackMin = useWalksBack(study.key, study.content_hash);
   return (
     <>
       <p className={classes.lead}>{inLanguage(protocol.description, language)}</p>
@@ -52,7 +54,7 @@ function FullOverview({ study, protocol }: FullOverviewProps): JSX.Element {
           <Title order={2} mb="md">
             {t("overview.procedure")}
           </Title>
-          <Procedure study={study} protocol={protocol} />
+          <Procedure study={study} protocol={protocol} walksBackMin={walksBackMin} />
         </Paper>
         <Paper>
           <Title order={2} mb="md">

@@ -23,9 +23,11 @@ import classes from "./Procedure.module.css";
 interface ProcedureProps {
   readonly study: StudyDetail;
   readonly protocol: StudyProtocol;
+  /** Walks back in minutes, as a pilot of this version says; null without one. */
+  readonly walksBackMin?: number | null;
 }
 
-export function Procedure({ study, protocol }: ProcedureProps): JSX.Element {
+export function Procedure({ study, protocol, walksBackMin = null }: ProcedureProps): JSX.Element {
   const { t, language } = useTexts();
   const { before, block, after } = protocol.procedure;
   return (
@@ -59,9 +61,11 @@ export function Procedure({ study, protocol }: ProcedureProps): JSX.Element {
         <span>{t("procedure.legend")}</span>
         <span className={classes.total}>
           {t("procedure.total", {
-            minutes: number(study.minutes, language, 0),
+            minutes: number(study.minutes + (walksBackMin ?? 0), language, 0),
             planned: number(study.planned_minutes, language, 0),
           })}
+          {walksBackMin !== null &&
+            ` ${t("pilot.walksBack", { back: number(walksBackMin, language, 1) })}`}
         </span>
       </div>
     </>

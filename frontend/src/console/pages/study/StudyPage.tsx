@@ -22,6 +22,9 @@ import { StudyHead, type StudySection } from "./StudyHead";
 const PreregistrationTab = lazy(async () => ({
   default: (await import("../../preregistration/PreregistrationTab")).PreregistrationTab,
 }));
+const PilotTab = lazy(async () => ({
+  default: (await import("../../pilot/PilotTab")).PilotTab,
+}));
 const DashboardTab = lazy(async () => ({
   default: (await import("./DashboardTab")).DashboardTab,
 }));
@@ -58,6 +61,7 @@ const CONTENT: Readonly<Record<SectionName, ComponentType<{ readonly study: Stud
   preregistration: PreregistrationTab,
   export: ExportTab,
   protocol: ProtocolTab,
+  pilot: PilotTab,
   versions: VersionsTab,
   suggestions: SuggestionsTab,
 };

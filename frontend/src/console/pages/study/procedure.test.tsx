@@ -10,7 +10,10 @@ const STUDY = { minutes: 20, planned_minutes: 10 } as unknown as StudyDetail;
 const TIMES = { preparation_s: 5, duration_s: 120, freeze_s: 3, questionnaire: "veq" } as const;
 
 /** The markup of a session with two conditions, whose block is given. */
-function shown(block: Partial<StudyProtocol["procedure"]["block"]>): string {
+function shown(
+  block: Partial<StudyProtocol["procedure"]["block"]>,
+  walksBackMin: number | null = null,
+): string {
   const protocol = {
     conditions: [{}, {}],
     procedure: { before: [], block: { limb_order: "fixed", phases: [], ...block }, after: [] },
@@ -18,7 +21,7 @@ function shown(block: Partial<StudyProtocol["procedure"]["block"]>): string {
   return renderToStaticMarkup(
     <MantineProvider>
       <I18nextProvider i18n={translations}>
-        <Procedure study={STUDY} protocol={protocol} />
+        <Procedure study={STUDY} protocol={protocol} walksBackMin={walksBackMin} />
       </I18nextProvider>
     </MantineProvider>,
   );
@@ -33,6 +36,13 @@ describe("One session as a row of steps", () => {
     for (const words of ["5 s", "120 s", "3 s", "until 2 crossings are done", "Questionnaire"]) {
       expect(row).toContain(words);
     }
+  });
+
+  it("adds the walks back of a pilot to the length of a visit, and says where they come from", () => {
+    expect(shown({})).toContain("about 20 min");
+    const piloted = shown({}, 1.7);
+    expect(piloted).toContain("about 22 min");
+    expect(piloted).toContain("1.7 min of walks back, as a pilot of this version says (simulated)");
   });
 
   it("puts the crossing before the tasks of its block", () => {

@@ -1,0 +1,270 @@
+/** Order a pilot: simulated people, or the power of the test, from what is assumed. */
+import { Button, Checkbox, NumberInput, Select, Textarea, TextInput, Title } from "@mantine/core";
+import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
+import { useMutation } from "@tanstack/react-query";
+import { type JSX, type ReactNode, useState } from "react";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { numbersIn } from "./numbers";
+import classes from "./Pilot.module.css";
+import { type NewPilot, type Pilot, type PilotDefaults, pilots } from "./pilots";
+
+interface PilotOrderProps {
+  readonly studyKey: string;
+  readonly defaults: PilotDefaults;
+  readonly onStarted: (pilot: Pilot) => unknown;
+}
+
+const PEOPLE = [1, 1000] as const;
+const SETS = [50, 10_000] as const;
+const LARGEST_SEED = 2 ** 31 - 1;
+const AVATARS = ["physics", "delayed_copy"] as const;
+
+const isWithin = (value: number | string, [low, high]: readonly [number, number]): boolean =>
+  typeof value === "number" && Number.isInteger(value) && value >= low && value <= high;
+
+export function PilotOrder({ studyKey, defaults, onStarted }: PilotOrderProps): JSX.Element {
+  const [assumed, setAssumed] = useState(defaults.assumptions ?? "");
+  const start = useMutation({
+    mutationFn: (order: NewPilot) => pilots.start(studyKey, order),
+    onSuccess: onStarted,
+  });
+  const assumptions = assumed.trim() === "" ? null : assumed;
+  const shared = { defaults, assumptions, isPending: start.isPending, onStart: start.mutate };
+  return (
+    <div className={classes.order}>
+      <div className={classes.both}>
+        <CohortForm {...shared} />
+        <PowerForm {...shared} />
+      </div>
+      <Assumed defaults={defaults} text={assumed} onText={setAssumed} />
+      {start.isError && <Failure error={start.error} />}
+    </div>
+  );
+}
+
+interface FormProps {
+  readonly defaults: PilotDefaults;
+  readonly assumptions: string | null;
+  readonly isPending: boolean;
+  readonly onStart: (order: NewPilot) => void;
+}
+
+function CohortForm({ defaults, assumptions, isPending, onStart }: FormProps): JSX.Element {
+  const { t } = useTexts();
+  const [people, setPeople] = useState<number | string>(defaults.participants);
+  const [seed, setSeed] = useState<number | string>(1);
+  const [avatar, setAvatar] = useState<(typeof AVATARS)[number]>(defaults.avatar);
+  const [withPower, setWithPower] = useState(true);
+  const isValid = isWithin(people, PEOPLE) && isWithin(seed, [0, LARGEST_SEED]);
+  return (
+    <OrderForm
+      title={t("pilot.cohort")}
+      lead={t("pilot.cohort.lead")}
+      isValid={isValid}
+      isPending={isPending}
+      onSubmit={() =>
+        onStart({
+          kind: "cohort",
+          participants: Number(people),
+          seed: Number(seed),
+          avatar,
+          assumptions: withPower ? assumptions : null,
+        })
+      }
+    >
+      <div className={classes.people}>
+        <NumberInput
+          label={t("pilot.cohort.n")}
+          min={PEOPLE[0]}
+          max={PEOPLE[1]}
+          allowDecimal={false}
+          value={people}
+          onChange={setPeople}
+        />
+        <Seed value={seed} onChange={setSeed} />
+        <Select
+          label={t("pilot.avatar")}
+          allowDeselect={false}
+          value={avatar}
+          onChange={(value) => value !== null && setAvatar(value as typeof avatar)}
+          data={AVATARS.map((value) => ({ value, label: t(`pilot.avatar.${value}`) }))}
+        />
+      </div>
+      <Checkbox
+        label={t("pilot.withPower")}
+        checked={withPower && assumptions !== null}
+        disabled={assumptions === null}
+        onChange={({ currentTarget }) => setWithPower(currentTarget.checked)}
+      />
+    </OrderForm>
+  );
+}
+
+function PowerForm({ defaults, assumptions, isPending, onStart }: FormProps): JSX.Element {
+  const { t } = useTexts();
+  const [text, setText] = useState(defaults.numbers.join(", "));
+  const [seed, setSeed] = useState<number | string>(1);
+  const [sets, setSets] = useState<number | string>(1000);
+  const [target, setTarget] = useState<number | string>(0.8);
+  const numbers = numbersIn(text);
+  const most = defaults.most_participants;
+  const isTarget = typeof target === "number" && target > 0 && target < 1;
+  const isValid =
+    numbers !== null &&
+    isWithin(seed, [0, LARGEST_SEED]) &&
+    isWithin(sets, SETS) &&
+    isTarget &&
+    assumptions !== null;
+  return (
+    <OrderForm
+      title={t("pilot.power")}
+      lead={t("pilot.power.lead")}
+      isValid={isValid}
+      isPending={isPending}
+      onSubmit={() =>
+        numbers !== null &&
+        assumptions !== null &&
+        onStart({
+          kind: "power",
+          participants: numbers,
+          seed: Number(seed),
+          sets: Number(sets),
+          target: Number(target),
+          assumptions,
+        })
+      }
+    >
+      <TextInput
+        label={t("pilot.power.n")}
+        description={most === null ? t("pilot.power.n.hint") : t("pilot.power.n.most", { most })}
+        error={numbers === null ? t("pilot.power.n.wrong") : undefined}
+        value={text}
+        onChange={({ currentTarget }) => setText(currentTarget.value)}
+      />
+      <div className={classes.fields}>
+        <NumberInput
+          label={t("pilot.power.sets")}
+          min={SETS[0]}
+          max={SETS[1]}
+          step={50}
+          allowDecimal={false}
+          value={sets}
+          onChange={setSets}
+        />
+        <Seed value={seed} onChange={setSeed} />
+        <NumberInput
+          label={t("pilot.power.target")}
+          min={0.01}
+          max={0.99}
+          step={0.05}
+          decimalScale={2}
+          value={target}
+          onChange={setTarget}
+        />
+      </div>
+    </OrderForm>
+  );
+}
+
+interface OrderFormProps {
+  readonly title: string;
+  readonly lead: string;
+  readonly isValid: boolean;
+  readonly isPending: boolean;
+  readonly onSubmit: () => void;
+  readonly children: ReactNode;
+}
+
+function OrderForm(props: OrderFormProps): JSX.Element {
+  const { title, lead, isValid, isPending, onSubmit, children } = props;
+  const { t } = useTexts();
+  return (
+    <form
+      className={classes.panel}
+      aria-label={title}
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (isValid) onSubmit();
+      }}
+    >
+      <Title order={2} size="h3">
+        {title}
+      </Title>
+      <p className={classes.soft}>{lead}</p>
+      {children}
+      <Button
+        type="submit"
+        className={classes.start ?? ""}
+        disabled={!isValid}
+        loading={isPending}
+        leftSection={<Icon name="play" size={16} />}
+      >
+        {t("pilot.start")}
+      </Button>
+    </form>
+  );
+}
+
+interface SeedProps {
+  readonly value: number | string;
+  readonly onChange: (value: number | string) => void;
+}
+
+function Seed({ value, onChange }: SeedProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <NumberInput
+      label={t("pilot.seed")}
+      title={t("pilot.seed.hint")}
+      min={0}
+      max={LARGEST_SEED}
+      allowDecimal={false}
+      value={value}
+      onChange={onChange}
+    />
+  );
+}
+
+interface AssumedProps {
+  readonly defaults: PilotDefaults;
+  readonly text: string;
+  readonly onText: (text: string) => void;
+}
+
+function Assumed({ defaults, text, onText }: AssumedProps): JSX.Element {
+  const { t } = useTexts();
+  const { assumptions, assumptions_trouble } = defaults;
+  return (
+    <details className={classes.assumed} open={assumptions === null}>
+      <summary>{t("pilot.assumptions")}</summary>
+      {assumptions_trouble !== null && (
+        <Notice tone="warn">{t("pilot.assumptions.unfit", { why: assumptions_trouble })}</Notice>
+      )}
+      <p className={classes.soft}>
+        {t(assumptions === null ? "pilot.assumptions.none" : "pilot.assumptions.hint")}
+      </p>
+      <Textarea
+        aria-label={t("pilot.assumptions.label")}
+        classNames={{ input: classes.yaml ?? "" }}
+        autosize
+        minRows={4}
+        maxRows={24}
+        spellCheck={false}
+        value={text}
+        onChange={({ currentTarget }) => onText(currentTarget.value)}
+      />
+      {assumptions !== null && text !== assumptions && (
+        <Button
+          size="compact-sm"
+          variant="default"
+          className={classes.reset ?? ""}
+          onClick={() => onText(assumptions)}
+        >
+          {t("pilot.assumptions.reset")}
+        </Button>
+      )}
+    </details>
+  );
+}

@@ -1,0 +1,114 @@
+/** The power of the test by number of participants, with everything that it rests on. */
+import { Figure } from "@charts/Figure";
+import { Paper, Title } from "@mantine/core";
+import { decimals, number } from "@shared/format";
+import { Notice } from "@shared/ui/Notice";
+import type { JSX } from "react";
+import { useTexts } from "../i18n";
+import { NumbersTable } from "../ui/tables";
+import { isNeverTested, powerFigure } from "./figures";
+import classes from "./Pilot.module.css";
+import type { PowerFigures, PowerPoint } from "./pilots";
+
+export function PowerCard({ power }: { readonly power: PowerFigures }): JSX.Element {
+  const { t, language } = useTexts();
+  const { test } = power;
+  const measure = test.score ?? test.measure;
+  const never = power.power.filter(isNeverTested).map(({ n }) => n);
+  return (
+    <Paper>
+      <Title order={3}>{t("pilot.curve")}</Title>
+      <p className={classes.soft}>
+        {t(power.preregistered ? "pilot.curve.preregistered" : "pilot.curve.assumed")}:{" "}
+        {t("pilot.curve.declared", {
+          test: test.test,
+          measure,
+          limb: test.limb,
+          direction: test.direction,
+          alpha: String(power.alpha),
+        })}
+      </p>
+      <p className={classes.sentence}>
+        {power.smallest_sufficient_n === null
+          ? t("pilot.curve.none", { target: power.target, planned: power.planned_n })
+          : t("pilot.curve.smallest", {
+              n: power.smallest_sufficient_n,
+              target: power.target,
+              planned: power.planned_n,
+            })}
+      </p>
+      {never.length > 0 && (
+        <Notice tone="warn">{t("pilot.curve.never", { numbers: never.join(", ") })}</Notice>
+      )}
+      {never.length < power.power.length && (
+        <Figure
+          figure={powerFigure(power, {
+            n: t("pilot.axis.n"),
+            share: t("pilot.axis.significant"),
+            power: t("pilot.series.power"),
+            level: t("pilot.series.level"),
+            target: t("pilot.series.target"),
+            alpha: t("pilot.series.alpha"),
+          })}
+          label={t("pilot.curve")}
+          watermark={t("simulated.watermark")}
+          loading={t("dashboard.loading")}
+          failed={t("dashboard.failed")}
+        />
+      )}
+      <NumbersTable
+        label={t("pilot.curve")}
+        columns={[
+          t("pilot.col.n"),
+          t("pilot.col.inTest"),
+          t("pilot.col.power"),
+          t("pilot.col.level"),
+          t("pilot.col.typeS"),
+          t("pilot.col.typeM"),
+          t("pilot.col.failed"),
+        ]}
+        rows={power.power.map((one) => cells(one, language))}
+      />
+      <p className={classes.soft}>{t("pilot.curve.note", { sets: power.sets })}</p>
+      <h3 className={classes.small}>{t("pilot.assumed")}</h3>
+      <p className={classes.soft}>
+        {t("pilot.assumed.difference", {
+          difference: number(power.assumed_difference, language, 3),
+          measure,
+        })}
+      </p>
+      <NumbersTable
+        label={t("pilot.assumed")}
+        columns={[
+          t("pilot.col.name"),
+          t("pilot.col.value"),
+          t("pilot.col.unit"),
+          t("pilot.col.source"),
+        ]}
+        rows={power.assumptions.map(({ name, value, unit, source }) => [
+          name,
+          [value].flat().join(", "),
+          unit,
+          source,
+        ])}
+      />
+      <p className={`${classes.soft} ${classes.hash}`}>SHA-256 {power.assumptions_sha256}</p>
+    </Paper>
+  );
+}
+
+function cells(one: PowerPoint, language: string): readonly string[] {
+  const share = (value: number) => decimals(value, language, 3);
+  const band = (value: number, low: number, high: number) =>
+    isNeverTested(one) ? "–" : `${share(value)} [${share(low)}, ${share(high)}]`;
+  const error = (value: number | null) => (value === null ? "–" : decimals(value, language, 2));
+  return [
+    String(one.n),
+    decimals(one.mean_in_test, language, 1),
+    band(one.power, one.low, one.high),
+    band(one.level, one.level_low, one.level_high),
+    error(one.type_s),
+    error(one.type_m),
+    String(one.failures + one.level_failures),
+  ];
+}
