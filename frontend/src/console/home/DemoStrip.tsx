@@ -20,7 +20,7 @@ export function DemoStrip(): JSX.Element | null {
   const place = demoPlace(address, session ?? null);
   if (place === null || demo?.state === "absent") return null;
   return (
-    <section className={classes.strip} aria-label={t("demo.label")}>
+    <section className={classes.strip} data-strip aria-label={t("demo.label")}>
       <Icon name="body" size={17} />
       <strong>{t("simulated.watermark")}</strong>
       {place === "session" || !isThere(demo) ? (

@@ -74,7 +74,7 @@ export function paletteOf(element: HTMLElement): StagePalette {
     trunk: token("--accent", "#0e6873"),
     left: LEFT_COLOUR,
     right: RIGHT_COLOUR,
-    ghost: token("--ink-soft", "#52605f"),
+    ghost: token("--stage-ghost", "#52605f"),
     unseen: token("--warn", "#8a5200"),
     highlight: token("--warn-line", "#d69a3c"),
     shadow: token("--stage-shadow", "#cbd4d4"),

@@ -38,7 +38,9 @@ export function FigureCard({
   ].join(" ");
   return (
     <figure className={look}>
-      <Title order={3}>{title}</Title>
+      <Title order={3} title={isCompact ? title : undefined}>
+        {title}
+      </Title>
       {figure === null ? (
         <p className={classes.missing}>{entry.empty}</p>
       ) : (
