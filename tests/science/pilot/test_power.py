@@ -1,78 +1,43 @@
 """Tests of power by simulation against published power, and of what is said beside it."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 
 from app.science.pilot import (
-    Course,
     PowerPoint,
     Results,
-    drawn_courses,
     power_point,
     smallest_sufficient,
 )
 from app.science.statistics import (
     Expected,
-    FloatArray,
     StatisticsError,
     clopper_pearson,
-    rm_anova,
     rm_anova_power,
 )
-
-_SETS = 4000
-
-
-def _f_test(values: FloatArray) -> float:
-    return rm_anova(values).effects[0].p
-
-
-def _greenhouse_geisser(values: FloatArray) -> float:
-    return rm_anova(values).effects[0].p_gg
-
-
-def _simulated(
-    n: int, partial_eta_squared: float, seed: int, p_of: Callable[[FloatArray], float] = _f_test
-) -> PowerPoint:
-    """Return the point of three levels with correlation .5 and an effect of this size."""
-    f = np.sqrt(partial_eta_squared / (1.0 - partial_eta_squared))
-    effects = np.array([[0.0, 1.0, 2.0]]) * f * np.sqrt(1.5)
-    course = Course(effects, effects, 0.0, 0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5))
-    orders = np.tile(np.arange(3), (_SETS, n, 1))
-    results = []
-    for at, one in enumerate((course, course.without_effect())):
-        levels = drawn_courses(one, orders, np.random.default_rng((seed, at)))[:, :, 0]
-        results.append(
-            Results(
-                np.array([p_of(values) <= 0.05 for values in levels]),
-                np.zeros(_SETS, dtype=np.bool_),
-                (levels[:, :, -1] - levels[:, :, 0]).mean(axis=1),
-                np.full(_SETS, n),
-            )
-        )
-    effect, null = results
-    return power_point(n, effect, null, assumed=float(effects[0, 2]))
-
-
-@pytest.mark.parametrize(
-    ("n", "eta", "published"),
-    [(12, 0.14, 0.823), (28, 0.0625 / 1.0625, 0.812)],
+from tests.science.pilot.known_powers import (
+    PUBLISHED,
+    SETS,
+    greenhouse_geisser,
+    simulated_power,
 )
+
+
+@pytest.mark.parametrize(("n", "eta", "published"), PUBLISHED)
 def test_power_of_the_anova_is_the_published_one(n: int, eta: float, published: float) -> None:
     """G*Power 3's power of the rm ANOVA, m = 3, r = .5: simulated within 2 SE, level 5 %, too."""
     assert rm_anova_power(n, Expected(eta)) == pytest.approx(published, abs=0.0005)
-    point = _simulated(n, eta, seed=24)
-    assert point.power == pytest.approx(published, abs=2 * np.sqrt(published * 0.18 / _SETS))
+    point = simulated_power(n, eta, seed=24)
+    assert point.power == pytest.approx(published, abs=2 * np.sqrt(published * 0.18 / SETS))
     assert point.low < published < point.high
-    assert point.level == pytest.approx(0.05, abs=2 * np.sqrt(0.05 * 0.95 / _SETS))
+    assert point.level == pytest.approx(0.05, abs=2 * np.sqrt(0.05 * 0.95 / SETS))
     assert point.mean_estimate == pytest.approx(2 * np.sqrt(1.5 * eta / (1 - eta)), rel=0.05)
 
 
 def test_the_corrected_test_has_less_power_under_sphericity() -> None:
     """Greenhouse-Geisser costs power where nothing needs correcting, and keeps below 5 %."""
-    plain, corrected = _simulated(12, 0.14, 24), _simulated(12, 0.14, 24, _greenhouse_geisser)
+    plain = simulated_power(12, 0.14, 24)
+    corrected = simulated_power(12, 0.14, 24, greenhouse_geisser)
     assert 0.01 < plain.power - corrected.power < 0.06
     assert corrected.level <= plain.level
 

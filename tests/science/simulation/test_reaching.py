@@ -3,33 +3,18 @@
 import numpy as np
 import pytest
 
-from app.science.rotations import FloatArray
-from app.science.simulation import Goal, GoalKind, MovementTraits, SimulatedParticipant
+from app.science.simulation import MovementTraits
 from app.science.simulation.aiming import Aim
 from app.science.simulation.paths import path_through
 from app.science.simulation.vision import LateVision
 from tests.science.simulation.people import RATE_HZ, person_of, rng_of, tip
-
-NOISY = MovementTraits(patience_s=60.0)
-
-
-def _touch(x: float, y: float = 1.25, near_m: float = 0.05) -> Goal:
-    """Return a goal to touch a point in the open, which has no way in."""
-    return Goal(GoalKind.REACH, "RightHand", (x, y, -0.45), near_m)
-
-
-def _reached(
-    person: SimulatedParticipant, goal: Goal, start_s: float, for_s: float, late_s: float = 0.0
-) -> FloatArray:
-    """Return the finger tip (N, 3) on its way; the person sees it late by `late_s`."""
-    tips: list[FloatArray] = []
-    late = round(late_s * RATE_HZ)
-    for frame in range(round(for_s * RATE_HZ)):
-        t_s = start_s + frame / RATE_HZ
-        tips.append(tip(person.pose(t_s, goal), "Right"))
-        x, y, z = tips[max(0, frame - late)].tolist()
-        person.see(t_s, "RightHand", (x, y, z))
-    return np.array(tips)
+from tests.science.simulation.reaches import (
+    NOISY,
+    fitts_slope_s_per_bit,
+    reach_of,
+    reached,
+    touch,
+)
 
 
 def test_a_reach_is_straight_and_its_speed_has_one_peak_in_the_middle() -> None:
@@ -37,32 +22,19 @@ def test_a_reach_is_straight_and_its_speed_has_one_peak_in_the_middle() -> None:
 
     Flash and Hogan 1985: a minimum-jerk movement peaks in the middle, at 15/8 of the mean speed.
     """
-    ratios, symmetry, deviations = [], [], []
-    for seed in range(8):
-        person = person_of(seed, NOISY)
-        _reached(person, _touch(-0.2), 0.0, 2.0)
-        way = _reached(person, _touch(0.2), 2.0, 2.0)
-        speed = np.linalg.norm(np.diff(way, axis=0), axis=1) * RATE_HZ
-        moving = np.flatnonzero(speed > 0.05 * speed.max())
-        first, last = moving[0], np.flatnonzero(speed > 0.05 * speed.max())[-1]
-        peak = int(speed.argmax())
+    reaches = [reach_of(seed) for seed in range(8)]
+    for one in reaches:
+        speed, peak, most = one.speed_m_s, one.peak, one.speed_m_s.max()
         # Up to the peak and down again, apart from corrections, which are slow.
-        assert np.count_nonzero(speed[first:last] > 0.5 * speed.max()) > 5
-        rising, falling = speed[first : peak + 1], speed[peak : peak + (peak - first)]
-        assert (np.diff(rising) > -0.05 * speed.max()).all()
-        assert (np.diff(falling) < 0.05 * speed.max()).all()
-        half = np.flatnonzero(speed > 0.5 * speed.max())
-        ratios.append((half[-1] - half[0]) / (2.0 * (peak - first) + 1e-9))
-        symmetry.append((peak - half[0]) / max(half[-1] - half[0], 1))
-        chord = way[half[-1]] - way[half[0]]
-        along = np.outer((way - way[half[0]]) @ chord / (chord @ chord), chord)
-        off = np.linalg.norm(way - way[half[0]] - along, axis=1)[half[0] : half[-1]]
-        deviations.append(off.max() / np.linalg.norm(chord))
+        assert np.count_nonzero(speed > 0.5 * most) > 5
+        rising, falling = speed[: peak + 1], speed[peak : 2 * peak]
+        assert (np.diff(rising) > -0.05 * most).all()
+        assert (np.diff(falling) < 0.05 * most).all()
     # A minimum-jerk speed is above half its peak for 0.541 of the time.
-    assert np.median(ratios) == pytest.approx(0.541, abs=0.08)
-    assert np.median(symmetry) == pytest.approx(0.5, abs=0.08)
+    assert np.median([one.half_share for one in reaches]) == pytest.approx(0.541, abs=0.08)
+    assert np.median([one.peak_share for one in reaches]) == pytest.approx(0.5, abs=0.08)
     # Straight reaches of people deviate by some per cent: Atkeson and Hollerbach 1985.
-    assert np.median(deviations) < 0.05
+    assert np.median([one.deviation for one in reaches]) < 0.05
 
 
 def test_the_time_to_hit_follows_fitts_law_within_published_slopes() -> None:
@@ -71,29 +43,15 @@ def test_the_time_to_hit_follows_fitts_law_within_published_slopes() -> None:
     Fitts 1954 found 10.1 bit/s in tapping; Soukoreff and MacKenzie 2004 list 3.7 to 4.9 bit/s for
     the mouse. The participant chooses its pace; noise and corrections are not told of it.
     """
-    bits, times_s = [], []
-    for seed in range(6):
-        for near_m in (0.015, 0.03, 0.06):
-            for reach_m in (0.15, 0.4):
-                person = person_of(seed, NOISY)
-                _reached(person, _touch(-0.1), 0.0, 1.6)
-                goal = _touch(-0.1 + reach_m, near_m=near_m)
-                way = _reached(person, goal, 1.6, 2.6)
-                away = np.linalg.norm(way - np.array(goal.target_m), axis=1)
-                began = int(np.flatnonzero(np.linalg.norm(way - way[0], axis=1) > 0.01)[0])
-                inside = int(np.flatnonzero(away > 1.5 * near_m)[-1]) + 1
-                bits.append(np.log2(reach_m / (2.0 * near_m) + 1.0))
-                times_s.append((inside - began) / RATE_HZ)
-    slope, _ = np.polyfit(bits, times_s, 1)
-    assert 0.10 <= slope <= 0.27
+    assert 0.10 <= fitts_slope_s_per_bit() <= 0.27
 
 
 @pytest.mark.parametrize(("late_s", "most_m"), [(0.0, 0.002), (0.35, 0.3)])
 def test_a_late_picture_of_the_hand_makes_it_overshoot(late_s: float, most_m: float) -> None:
     """Somebody who moves exactly stays on target by present sight, and overshoots by late sight."""
     person = person_of(traits=MovementTraits(precision=0.0, patience_s=60.0))
-    _reached(person, _touch(-0.2), 0.0, 3.0, late_s)
-    way = _reached(person, _touch(0.2), 3.0, 3.0, late_s)
+    reached(person, touch(-0.2), 0.0, 3.0, late_s)
+    way = reached(person, touch(0.2), 3.0, 3.0, late_s)
     beyond_m = float(way[:, 0].max()) - 0.2
     assert beyond_m < most_m
     assert late_s == 0.0 or beyond_m > 0.03
@@ -105,7 +63,7 @@ def test_sight_corrects_the_noise_of_a_movement() -> None:
     for seeing, distances in ends_m.items():
         for seed in range(8):
             person = person_of(seed, NOISY)
-            goal, frames = _touch(0.2), range(round(4.0 * RATE_HZ))
+            goal, frames = touch(0.2), range(round(4.0 * RATE_HZ))
             for frame in frames:
                 place = tip(person.pose(frame / RATE_HZ, goal), "Right")
                 if seeing:
