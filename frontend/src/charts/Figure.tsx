@@ -1,7 +1,7 @@
 /** A Plotly figure from the server. The library is large, so it is loaded with the first figure. */
 import { Center, Loader, Text, useComputedColorScheme } from "@mantine/core";
 import { type JSX, type RefObject, useEffect, useRef, useState } from "react";
-import { heightOf, type Palette, styled } from "./layout";
+import { heightOf, labelled, type Palette, styled } from "./layout";
 
 interface FigureProps {
   /** The figure as Plotly's JSON: `{data, layout}`. */
@@ -97,7 +97,12 @@ function draw(
   import("plotly.js-cartesian-dist-min")
     .then(async ({ default: plotly }) => {
       if (cancelled) return;
-      await plotly.react(element, data, styled(layout, palette, watermark), CONFIG);
+      await plotly.react(
+        element,
+        labelled(data, palette),
+        styled(layout, palette, watermark),
+        CONFIG,
+      );
       const observer = new ResizeObserver(() => plotly.Plots.resize(element));
       observer.observe(element);
       tidy = () => {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { heightOf, type Palette, styled } from "./layout";
+import { heightOf, labelled, type Palette, styled } from "./layout";
 
 const palette: Palette = { ink: "#111", soft: "#555", line: "#ccc", sim: "#53a", font: "serif" };
 
@@ -22,6 +22,15 @@ describe("the styling of a figure", () => {
   it("adds a watermark to a figure of simulated data and keeps its annotations", () => {
     const { annotations } = styled({ annotations: [{ text: "n = 6" }] }, palette, "SIMULATED");
     expect(annotations).toMatchObject([{ text: "n = 6" }, { text: "SIMULATED" }]);
+  });
+
+  it("writes direct labels in the page's ink and leaves other traces as they are", () => {
+    const line = { mode: "lines", line: { color: "#0072B2" } };
+    const mean = { ...line, text: ["mean"], textfont: { color: "#0072B2", size: 12 } };
+    expect(labelled([line, mean], palette)).toEqual([
+      line,
+      { ...mean, textfont: { color: "#111", size: 12 } },
+    ]);
   });
 
   it("uses the height that the server requests", () => {

@@ -54,6 +54,20 @@ export function styled(layout: Layout, palette: Palette, watermark: string | nul
   };
 }
 
+/**
+ * The server's traces with their direct labels in the page's ink: a line's own colour, which is
+ * chosen for lines on any ground, is too faint for small letters on a dark one.
+ */
+export const labelled = (
+  data: readonly unknown[],
+  palette: Pick<Palette, "ink">,
+): readonly unknown[] =>
+  data.map((trace) =>
+    isObject(trace) && isObject(trace.textfont)
+      ? { ...trace, textfont: { ...trace.textfont, color: palette.ink } }
+      : trace,
+  );
+
 function axes(layout: Layout, palette: Palette): Layout {
   const names = new Set([
     "xaxis",

@@ -1,5 +1,11 @@
 /** The console's queries to the server, each with its cache key. */
-import { analysis, type FigureGroup, type Filter, preregistrations } from "@shared/api/analysis";
+import {
+  analysis,
+  awaitsFirstFigure,
+  type FigureGroup,
+  type Filter,
+  preregistrations,
+} from "@shared/api/analysis";
 import { companions } from "@shared/api/companion";
 import { drafts, instruments, versions } from "@shared/api/drafts";
 import { network, sessions, studies } from "@shared/api/endpoints";
@@ -65,7 +71,8 @@ export const dashboardQuery = (key: string, filter: Filter, group: FigureGroup) 
     queryKey: ["studies", key, "dashboard", filter, group],
     queryFn: () => analysis.dashboard(key, filter, group),
     // The server returns the last figures it drew, and redraws them if there are newer data.
-    refetchInterval: ({ state }) => (state.data?.current === false ? 1500 : false),
+    refetchInterval: ({ state }) =>
+      state.data?.current === false ? 1500 : awaitsFirstFigure(state.data) ? 3000 : false,
     placeholderData: keepPreviousData,
   });
 

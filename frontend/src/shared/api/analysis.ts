@@ -58,6 +58,19 @@ export function filterFrom(search: URLSearchParams): Filter {
   };
 }
 
+/**
+ * Whether nothing can be drawn yet of simulated people who are on their way: the first answers make
+ * the first figure. Of people the first figure waits for the end of their session, since drawing
+ * takes time from the computer that they use.
+ */
+export const awaitsFirstFigure = (
+  found: Pick<Dashboard, "simulated" | "n_running" | "figures"> | undefined,
+): boolean =>
+  found !== undefined &&
+  found.simulated &&
+  found.n_running > 0 &&
+  found.figures.every(({ figure }) => figure === null);
+
 export const analysis = {
   /** One group of figures, which is ready sooner than all of them. */
   dashboard: (key: string, filter: Filter, group: FigureGroup) =>
