@@ -107,7 +107,12 @@ CONSOLE = (
     Page("alarm-silent-dark", "An alarm", "Impossible to miss, without moving anything else."),
     Page("alarm-history-light", "Alarms so far", "When each began and ended."),
     Page("session-debriefing", "Debriefing", "Shortly before the end, with what is still missing."),
-    Page("session-completed", "A completed session", "What was measured, phase by phase."),
+    Page(
+        "session-completed",
+        "A completed session",
+        "What was measured, phase by phase.",
+        WINDOW_PX,
+    ),
     Page("console-replay-light", "Replay", "A recorded phase, synchronised with its events."),
     Page("stop-rule-console", "A held session", "A stop rule pauses it until somebody decides."),
     Page("expert-cockpit", "An expert's session", "Experts can try settings while it runs."),

@@ -42,8 +42,8 @@ FEET = StateCheck(
             "unknown",
             "wait",
             Words(
-                en="The headset's program does not say whether it measures them",
-                de="Das Programm des Headsets sagt nicht, ob es sie misst",
+                en="The headset does not say if it measures them",
+                de="Das Headset sagt nicht, ob es sie misst",
             ),
         ),
         Finding(
