@@ -7,12 +7,13 @@
 `populations` are the cells of `walking_cells`: P_prob's CRPS at most .9 of P_adapt's and below
 P_stat's, P_adapt's below P_stat's, each in 80 % of the cells; the interquartile range of
 predictions over that of the walks, median over courses, from .75 to 1.5. `replication` are the
-experiments of the paper; of these only the leave-out errors have limits. `mixed` predicts the same
-synthetic walkers with P_mixed and the baselines; its JSON has `synthetic`, one row for each cell of
-`walking_mixed`. `real` needs the shared
-data: its JSON has `evaluations`, one row for each model and data set of `walking_people`. On every
-data set our model's CRPS must not be larger than the best baseline's by more than the interval over
-people; on the ten-subject table its coverages must be within 8 points. Takes a few minutes.
+experiments of the paper; of these only the leave-out errors have limits. `ablation` leaves out each
+parameter in every population, on all walks at the workplaces and on those that turn. `mixed`
+predicts the same synthetic walkers with P_mixed and the baselines; its JSON has `synthetic`, one
+row for each cell of `walking_mixed`. `real` needs the shared data: its JSON has `evaluations`, one
+row for each model and data set of `walking_people`. On every data set our model's CRPS must not be
+larger than the best baseline's by more than the interval over people; on the ten-subject table its
+coverages must be within 8 points. Takes a few minutes.
 """
 
 import sys
@@ -23,6 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.benchmarks.report import Figure, Report
+from tests.benchmarks.walking_ablation import SETS, ablations, of_set
 from tests.benchmarks.walking_cells import Cell, studied
 from tests.benchmarks.walking_mixed import mixed_cells
 from tests.benchmarks.walking_people import BASELINE_NAMES, OURS, TABLE, Score, less, scores
@@ -117,6 +119,24 @@ def replication_figures() -> Iterator[Figure]:
         yield Figure(part, f"k = {near.k}, CRPS", near.crps_s, "s")
 
 
+def ablation_figures() -> Iterator[Figure]:
+    """Yield what each parameter is worth, and the best number of neighbours; without limits."""
+    for walks_set in SETS:
+        found = of_set(ablations(), walks_set)
+        part = f"ablation, {walks_set}"
+        yield Figure(part, "walks of a population", float(found[0].walks), "")
+        for column in zip(*(one.parts for one in found), strict=True):
+            name, shares = column[0].parameter, [one.share for one in column]
+            yield Figure(
+                part, f"CRPS without {name}, median", 100.0 * float(np.median(shares)), "%"
+            )
+            yield Figure(
+                part, f"populations that need {name}", sum(one.helps for one in column), ""
+            )
+        best = float(np.median([one.best_k for one in found]))
+        yield Figure(part, "best number of neighbours, median", best, "")
+
+
 def real_figures() -> Iterator[Figure]:
     """Yield the errors of predicted speeds and durations, and the CRPS of walks left out."""
     found = real()
@@ -156,6 +176,7 @@ def left_out_figures() -> Iterator[Figure]:
 FIGURES = {
     "populations": population_figures,
     "replication": replication_figures,
+    "ablation": ablation_figures,
     "mixed": mixed_figures,
     "real": real_figures,
 }
@@ -168,7 +189,7 @@ def main(arguments: list[str]) -> int:
 
     folder = shared_folder()
     people = () if folder is None else scores(folder)
-    text = replication_report(studied(), repeated(), real(), people, mixed_cells())
+    text = replication_report(studied(), repeated(), real(), people, mixed_cells(), ablations())
     if "--write" in arguments:
         DOCUMENT.write_text(text, encoding="utf-8")
     else:

@@ -31,10 +31,10 @@ from app.science.walking.models import (
 from app.science.walking.records import LENGTH, PAPER_GRID, PAPER_PARAMETERS, STATURE, ParameterGrid
 from app.science.walking.scene import straight_scene
 from app.science.walking.synthetic import POPULATIONS, Sample, synthetic_walks
+from tests.benchmarks.walking_ablation import NEIGHBOURS
 from tests.benchmarks.walking_cells import FOLLOWER, Studied, made
 from tests.science.walking.submodels import with_fixed_parameter, without_dependency
 
-NEIGHBOURS = (10, 20, 50, 100, 200, 500)
 DISTANCES_M, LONG_PEOPLE, LONG_TIMES = (10.0, 25.0, 50.0), 16, 4
 
 

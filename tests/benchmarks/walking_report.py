@@ -8,6 +8,7 @@ import numpy as np
 from app.science.walking.evaluation import LEAST_PEOPLE, Evaluation
 from app.science.walking.maps import SuitabilityOptions
 from app.science.walking.models import FittedWalking
+from tests.benchmarks.walking_ablation import NEIGHBOURS, Ablation
 from tests.benchmarks.walking_cells import OTHERS, PEOPLE, REPETITIONS, Studied
 from tests.benchmarks.walking_mixed import MixedCell
 from tests.benchmarks.walking_paper import (
@@ -21,6 +22,7 @@ from tests.benchmarks.walking_people import BASELINE_NAMES, OURS, Score, less
 from tests.benchmarks.walking_real import RealWalks
 from tests.benchmarks.walking_replication import Replication
 from tests.benchmarks.walking_report_texts import (
+    ABLATION,
     FEW_PEOPLE,
     INTRODUCTION,
     LEFT_OUT_PEOPLE,
@@ -40,11 +42,12 @@ def replication_report(
     real: RealWalks | None,
     scores: Sequence[Score],
     mixed: Sequence[MixedCell],
+    ablations: Sequence[Ablation],
 ) -> str:
     """Return the whole document."""
     parts = [
         INTRODUCTION.format(people=PEOPLE, others=OTHERS, times=REPETITIONS),
-        "## What reproduces, and what does not\n\n" + verdicts(populations, repeated),
+        "## What reproduces, and what does not\n\n" + verdicts(populations, repeated, ablations),
         *(
             ["## Real people, left out one at a time\n\n" + left_out_people(scores)]
             if scores
@@ -54,8 +57,9 @@ def replication_report(
         "## Populations: P_mixed and the baselines\n\n" + mixed_section(mixed),
         *(_workplace(repeated, number) for number in (0, 1)),
         "## Model parameters\n\n" + _submodels(repeated),
+        "## Model parameters in all populations\n\n" + ablation_section(ablations),
         "## Interpolation\n\n" + _left_out(repeated),
-        "## Neighbours\n\n" + _sweep(repeated),
+        "## Neighbours\n\n" + _sweep(repeated) + "\n\n" + neighbours_section(ablations),
         "## Long distances\n\n" + _long_walks(repeated),
         "## Time saved in a work cycle\n\n" + _saved(populations),
         "## Static parameters\n\n" + _static(repeated),
@@ -215,6 +219,33 @@ def _submodels(one: Replication) -> str:
         for part in one.submodels
     ]
     return _table(("without", "paper, median |dt|", "ours, median |dt|", "ours, CRPS"), rows)
+
+
+def ablation_section(ablations: Sequence[Ablation]) -> str:
+    """Return what each parameter is worth in every population, on all walks and on turning ones."""
+    rows = [
+        (
+            one.population,
+            one.walks_set,
+            f"{one.walks} of {one.people}",
+            f"{one.crps_s:.3f}",
+            *(f"{100.0 * part.share:+.0f}{'' if part.helps else ' ns'}" for part in one.parts),
+        )
+        for one in ablations
+    ]
+    names = [part.parameter for part in ablations[0].parts]
+    head = ("population", "walks", "walks, people", "CRPS, s", *(f"{name}, %" for name in names))
+    return f"{ABLATION}\n{_table(head, rows)}"
+
+
+def neighbours_section(ablations: Sequence[Ablation]) -> str:
+    """Return the CRPS by the number of neighbours, in every population."""
+    rows = [
+        (one.population, one.walks_set, *(f"{value:.3f}" for value in one.by_k.values()))
+        for one in ablations
+    ]
+    head = ("population", "walks, both workplaces", *(f"CRPS k = {k}, s" for k in NEIGHBOURS))
+    return _table(head, rows)
 
 
 def _left_out(one: Replication) -> str:
