@@ -17,6 +17,8 @@ import numpy as np
 import uvloop
 from httpx2 import AsyncClient, Timeout
 
+from tests.support.server import CONNECTIONS
+
 VIEW_EVERY_S = 2.0
 
 
@@ -59,7 +61,9 @@ async def run(plan: ConsolePlan) -> dict[str, Any]:
     """Open the consoles, watch for the duration, and save the events."""
     seen = Seen(array("d"), array("d"))
     timeout = Timeout(30.0, read=60.0, pool=None)
-    async with AsyncClient(base_url=plan.url, cookies=plan.cookies, timeout=timeout) as client:
+    async with AsyncClient(
+        base_url=plan.url, cookies=plan.cookies, timeout=timeout, limits=CONNECTIONS
+    ) as client:
         opened = [asyncio.Event() for _ in plan.sessions]
         tasks = [
             asyncio.create_task(_follow(client, number, key, is_open, seen))
