@@ -13,6 +13,7 @@ import os
 import signal
 import sys
 import threading
+from collections.abc import Coroutine
 from dataclasses import fields
 from typing import Any
 
@@ -28,9 +29,17 @@ STOPPED = "The scripted participant was stopped."
 def main() -> int:
     """Rehearse; return 1 if the rehearsal failed."""
     plan = plan_from(json.loads(sys.stdin.readline()))
+    return run_to_end(_rehearse(plan))
+
+
+def run_to_end(rehearsing: Coroutine[Any, Any, None]) -> int:
+    """Rehearse, and report the end; return 1 if that failed or was stopped.
+
+    It ends with the process that started this one, and with a termination.
+    """
     end_with_the_starter()
     try:
-        asyncio.run(_rehearse(plan))
+        asyncio.run(_stoppable(rehearsing))
     except asyncio.CancelledError:
         return 1
     except Exception as error:  # noqa: BLE001  # every error is reported
@@ -40,12 +49,16 @@ def main() -> int:
     return 0
 
 
-async def _rehearse(plan: RehearsalPlan) -> None:
+async def _stoppable(rehearsing: Coroutine[Any, Any, None]) -> None:
     playing = asyncio.current_task()
     assert playing is not None  # noqa: S101 - this is one
     # Windows has no such signal: there a termination takes effect immediately.
     with contextlib.suppress(NotImplementedError):
         asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, playing.cancel)
+    await rehearsing
+
+
+async def _rehearse(plan: RehearsalPlan) -> None:
     async with assembled(plan, lambda words: emit(step=words)) as cast:
         emit(session=cast.operator.session_id)
         try:

@@ -8,14 +8,12 @@ immediately when its input is closed, because then the program that started it h
 """
 
 import asyncio
-import contextlib
 import json
-import signal
 import sys
 from collections.abc import Sequence
 from typing import Any
 
-from app.rehearsal.__main__ import emit, end_session, end_with_the_starter, message_of, plan_from
+from app.rehearsal.__main__ import emit, end_session, plan_from, run_to_end
 from app.rehearsal.cast import perform
 from app.rehearsal.rehearse import RehearsalPlan, assembled
 
@@ -24,25 +22,11 @@ def main() -> int:
     """Rehearse with everybody; return 1 if a rehearsal failed or was stopped."""
     order: dict[str, Any] = json.loads(sys.stdin.readline())
     plans = [plan_from(plan) for plan in order["plans"]]
-    end_with_the_starter()
-    try:
-        asyncio.run(rehearse_several(plans, int(order["at_once"])))
-    except asyncio.CancelledError:
-        return 1
-    except Exception as error:  # noqa: BLE001  # every error is reported
-        emit(error=message_of(error))
-        return 1
-    emit(done=True)
-    return 0
+    return run_to_end(rehearse_several(plans, int(order["at_once"])))
 
 
 async def rehearse_several(plans: Sequence[RehearsalPlan], at_once: int) -> None:
     """Run one rehearsal a plan, at most `at_once` at the same time."""
-    playing = asyncio.current_task()
-    assert playing is not None  # noqa: S101 - this is one
-    # Windows has no such signal: there a termination takes effect immediately.
-    with contextlib.suppress(NotImplementedError):
-        asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, playing.cancel)
     places = asyncio.Semaphore(at_once)
 
     async def visit(person: int, plan: RehearsalPlan) -> None:

@@ -96,15 +96,12 @@ class Injector:
     def follow(self, child: int) -> int:
         """Follow until all processes have ended; return the exit code, negative for a signal."""
         code = 0
-        while True:
-            try:
-                thread, status = os.waitpid(-1, kernel.WALL)
-            except ChildProcessError:
-                return code
-            if not os.WIFSTOPPED(status):
-                code = os.waitstatus_to_exitcode(status) if thread == child else code
-                continue
-            self._go_on(thread, status)
+        for thread, status in kernel.changes():
+            if os.WIFSTOPPED(status):
+                self._go_on(thread, status)
+            elif thread == child:
+                code = os.waitstatus_to_exitcode(status)
+        return code
 
     def _go_on(self, thread: int, status: int) -> None:
         number, event = os.WSTOPSIG(status), status >> 16

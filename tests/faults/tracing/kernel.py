@@ -5,6 +5,7 @@ Numbers are from the kernel's headers `ptrace.h`, `seccomp.h`, `prctl.h` and `bp
 
 import ctypes
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from tests.faults.tracing.calls import O_CREAT, O_TRUNC, OPEN_FLAGS_AT, Machine
@@ -55,6 +56,16 @@ class Stop:
 
     at_exit: bool
     values: tuple[int, ...]
+
+
+def changes() -> Iterator[tuple[int, int]]:
+    """Yield every thread that stops or ends, with its status, until none is left."""
+    while True:
+        try:
+            change = os.waitpid(-1, WALL)
+        except ChildProcessError:
+            return
+        yield change
 
 
 def ptrace(request: int, thread: int, address: int = 0, data: int = 0) -> int:

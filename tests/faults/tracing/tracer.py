@@ -37,17 +37,14 @@ class Tracer:
     def follow(self, child: int) -> int:
         """Follow until all processes have ended; return the exit code, negative for a signal."""
         code = 0
-        while True:
-            try:
-                thread, status = os.waitpid(-1, kernel.WALL)
-            except ChildProcessError:
-                return code
+        for thread, status in kernel.changes():
             if os.WIFSTOPPED(status):
                 self._go_on(thread, status)
                 continue
             self._write(self._begun.pop(thread, None))
             if thread == child:
                 code = os.waitstatus_to_exitcode(status)
+        return code
 
     def _go_on(self, thread: int, status: int) -> None:
         """Handle a stop and let the thread continue."""

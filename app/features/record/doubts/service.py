@@ -266,21 +266,12 @@ class _Reader:
         return found
 
     def _completed(self) -> dict[Key, list[Completed]]:
-        query = select(
-            Completion.session_id,
-            Completion.phase_id,
-            Completion.epoch,
-            Completion.number,
-            Completion.at_s,
-            Completion.active_s,
-            Completion.duration_s,
-            Completion.order,
-        )
+        columns = (getattr(Completion, name) for name in Completed._fields)
+        query = select(Completion.session_id, Completion.phase_id, *columns)
         found: dict[Key, list[Completed]] = defaultdict(list)
-        for row in self._of_chosen(query, Completion):
-            session_id, phase_id, epoch, number, at_s, active_s, duration_s, order = row
-            one = Completed(epoch, number, at_s, active_s, duration_s, order=tuple(order))
-            found[session_id, phase_id].append(one)
+        for session_id, phase_id, *values in self._of_chosen(query, Completion):
+            done = Completed(*values)
+            found[session_id, phase_id].append(done._replace(order=tuple(done.order)))
         return found
 
     def _coverage(self) -> dict[Key, Coverage]:

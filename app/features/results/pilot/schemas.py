@@ -1,5 +1,6 @@
 """Request and response models of pilots; all that they describe is simulated."""
 
+from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated, Literal
 
@@ -107,11 +108,12 @@ class FindingView(BaseModel):
     remedy: str
 
 
-class PhaseFigures(BaseModel):
+@dataclass(frozen=True)
+class PhaseFigures:
     """One limb at one latency: means over simulated people.
 
     `at_floor`: the share who complete nothing. `share_of_lowest`: completions over those at the
-    lowest latency; null if there are none.
+    lowest latency; None if there are none.
     """
 
     limb: str

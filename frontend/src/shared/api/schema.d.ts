@@ -9276,7 +9276,7 @@ export interface components {
          * @description One limb at one latency: means over simulated people.
          *
          *     `at_floor`: the share who complete nothing. `share_of_lowest`: completions over those at the
-         *     lowest latency; null if there are none.
+         *     lowest latency; None if there are none.
          */
         readonly PhaseFigures: {
             /** At Floor */

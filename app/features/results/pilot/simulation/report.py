@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 from scipy import stats
 
+from app.features.results.pilot.schemas import PhaseFigures
 from app.features.results.pilot.simulation.check import Checked, Finding, Reached
 from app.features.results.pilot.simulation.cohort import Cohort
 from app.features.results.pilot.simulation.plan import PilotStudy
@@ -19,23 +20,6 @@ PUBLISHED: Final = {45.0: 66.0, 125.0: 61.5, 350.0: 36.0}
 """Motor performance in per cent by end-to-end latency in ms (Waltemate et al. 2016, ten people)."""
 _MB_PER_MINUTE: Final = 2.03
 """Storage of a minute of both bodies at 90 Hz (docs/benchmarks.md, encoding)."""
-
-
-@dataclass(frozen=True)
-class Cell:
-    """One limb at one latency: means over people, and the share who completed nothing."""
-
-    limb: str
-    latency_ms: float
-    people: int
-    completions: float
-    completions_sd: float
-    side_contacts: float
-    contact_time_s: float
-    out_of_order: float
-    walk_back_s: float
-    at_floor: float
-    share_of_lowest: float | None
 
 
 @dataclass(frozen=True)
@@ -59,7 +43,7 @@ class CohortReport:
     """
 
     cohort: Cohort
-    cells: tuple[Cell, ...]
+    cells: tuple[PhaseFigures, ...]
     changes: tuple[Change, ...]
     session_min: float
     walk_back_min: float
@@ -189,7 +173,7 @@ def _walk_back_s(phase: PhaseOutcome) -> float:
     return max(0.0, phase.elapsed_s - phase.active_s)
 
 
-def _cells(visits: Sequence[Visit]) -> Iterator[Cell]:
+def _cells(visits: Sequence[Visit]) -> Iterator[PhaseFigures]:
     for limb, by_latency in _by_limb(visits).items():
         lowest: float | None = None
         for latency_ms in sorted(by_latency):
@@ -197,7 +181,7 @@ def _cells(visits: Sequence[Visit]) -> Iterator[Cell]:
             tasks = np.array([one.completions for one in own], dtype=np.float64)
             if lowest is None:
                 lowest = float(tasks.mean())
-            yield Cell(
+            yield PhaseFigures(
                 limb=limb,
                 latency_ms=latency_ms,
                 people=len(own),
