@@ -52,8 +52,8 @@ def _signed_in(folder: Path) -> Iterator[TestClient]:
 def test_a_dashboard_has_the_documented_fields(client: TestClient) -> None:
     """A dashboard has exactly the documented fields, each figure with a plot or a sentence."""
     view = client.get(f"/api/studies/{STUDY}/dashboard", params={"kind": "simulated"}).json()
-    about = {"kind", "simulated", "n_sessions", "n_completed", "n_not_valid", "avatar"}
-    assert set(view) == about | {"drawn_at", "current", "figures", "filter", "choices"}
+    about = {"kind", "simulated", "n_sessions", "n_running", "n_completed", "n_not_valid"}
+    assert set(view) == about | {"avatar", "drawn_at", "current", "figures", "filter", "choices"}
     assert (view["kind"], view["simulated"], view["n_completed"]) == ("simulated", True, 2)
     for entry in view["figures"]:
         words = {"key", "title", "caption", "empty", "n", "group", "wide", "measure"}
