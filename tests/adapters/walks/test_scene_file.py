@@ -14,7 +14,7 @@ from app.adapters.walks.scene_file import load_scene, load_shipped, shipped_scen
 from app.protocol.errors import ConfigError
 from app.protocol.source import read_source
 from app.science.walking.planning import LazyThetaPlanner
-from app.science.walking.scene import area_m2
+from app.science.walking.scene import area_m2, turning_per_m
 
 SCENE = """
 key: my-lab
@@ -142,14 +142,14 @@ def test_shipped_scenes_say_what_they_assume(key: str) -> None:
     assert "Assumed, since the paper does not say:" in scene.about
 
 
-def test_the_first_workplace_says_nothing_about_curvature() -> None:
-    """All paths of the paper's first scene are straight lines of two points; the second's turn."""
-    points = []
+def test_paths_turn_at_both_workplaces() -> None:
+    """Three walks of the first scene lead round a rack; all of the second by .3 rad/m or more."""
+    turning = []
     for key in ("car-and-three-racks", "car-between-two-racks"):
         scene = load_shipped(key)
         planner = LazyThetaPlanner(scene)
         paths = [planner.plan(scene.places[one.start], scene.places[one.goal])
                  for one in scene.paths]  # fmt: skip
-        points.append([len(path.points_m) for path in paths])
-    assert set(points[0]) == {2}
-    assert min(points[1]) > 2
+        turning.append([turning_per_m(path.points_m) for path in paths])
+    assert sum(one > 0.1 for one in turning[0]) == 3
+    assert min(turning[1]) >= 0.3
