@@ -26,7 +26,15 @@ def main() -> int:
 
 
 async def rehearse_several(plans: Sequence[RehearsalPlan], at_once: int) -> None:
-    """Run one rehearsal a plan, at most `at_once` at the same time."""
+    """Run one rehearsal a plan.
+
+    Args:
+        plans: the visits; the reports count people from 1, in this order.
+        at_once: how many people are in their visit at the same time.
+
+    Raises:
+        ExceptionGroup: a rehearsal failed, and the others have ended their sessions.
+    """
     places = asyncio.Semaphore(at_once)
 
     async def visit(person: int, plan: RehearsalPlan) -> None:
