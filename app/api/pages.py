@@ -172,6 +172,7 @@ def _answer_if_possible(first: FirstAnswer, request: Request) -> str | None:
     try:
         return first(request)
     except ReembodyError:
+        # A refusal, such as for an erased session: the page's own request gets it, too.
         return None
     except Exception as error:  # noqa: BLE001 - the page's own request reports it
         # Without a traceback, which must not fill a full disk.

@@ -12,6 +12,7 @@ from app.database import Database
 from app.errors import NotFound
 from app.features.results.analysis import tables
 from app.features.results.analysis.codebook import columns_of
+from app.features.results.analysis.questions import wide_table
 from app.features.results.analysis.schemas import Kind
 from app.models import JointErrorCourseRow, JointErrorRow
 from tests.features.builders import STUDY, SessionSpec, build_session
@@ -213,3 +214,17 @@ def test_an_unknown_study_and_an_unknown_kind_are_refused(database: Database) ->
         assert unknown.value.valid == [STUDY]
         with pytest.raises(ValueError, match="valid are people, simulated, test, all"):
             tables.phases_table(db, STUDY, "robots")  # type: ignore[arg-type]  # the fact
+
+
+@pytest.mark.one_engine
+def test_what_is_shared_is_read_once_for_everything_within(database: Database) -> None:
+    """Tables and the wide table of one export are joined with the same contexts, read once."""
+    shared: tables.Contexts = {}
+    with database.writing() as db:
+        build_session(db, SessionSpec("P-0001"))
+    with database.reading() as db, tables.shared_contexts(shared):
+        wide_table(db, STUDY, "people")
+        read = dict(shared)
+        tables.sessions_table(db, STUDY, "people")
+    assert ("sessions_context", STUDY, "people") in read
+    assert all(shared[name] is frame for name, frame in read.items())

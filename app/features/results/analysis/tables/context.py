@@ -31,8 +31,12 @@ _shared: ContextVar[Contexts | None] = ContextVar("shared_contexts", default=Non
 def shared_contexts(cache: Contexts) -> Iterator[None]:
     """Read each context table only once in this context manager, and store it in `cache`.
 
-    Only for tables of one database whose data do not change while `cache` is used.
+    Only for tables of one database whose data do not change while `cache` is used. Within another
+    one the outer cache is used, so that what a caller has read is not read again.
     """
+    if _shared.get() is not None:
+        yield
+        return
     token = _shared.set(cache)
     try:
         yield
