@@ -8,6 +8,7 @@ from app.features.results.pilot.pilot_queue import PilotQueue
 from app.features.results.pilot.schemas import NewPilot, PilotDefaults, PilotListed, PilotView
 from app.features.results.pilot.service import (
     PILOTS,
+    check_order,
     follow_pilot,
     order_pilot,
     pilot_defaults,
@@ -16,6 +17,7 @@ from app.features.results.pilot.service import (
     pilot_record,
     pilot_view,
 )
+from app.platform.context import AppContext
 from app.platform.dependencies import FREES_SPACE, Context, Reading, SignedIn, write
 
 router = APIRouter(prefix="/studies/{key}", tags=["pilots"])
@@ -36,8 +38,14 @@ def get_pilots(key: str, db: Reading, context: Context, _: SignedIn) -> list[Pil
 @router.post("/pilots", status_code=201)
 async def post_pilot(key: str, request: NewPilot, context: Context, caller: SignedIn) -> PilotView:
     """Start a pilot; the response is immediate, and its view shows the progress."""
+    await run_in_threadpool(_check, context, key, request)
     pilot_id = await write(context, lambda db: order_pilot(db, context, caller, key, request))
     return await run_in_threadpool(follow_pilot, context, key, pilot_id)
+
+
+def _check(context: AppContext, key: str, request: NewPilot) -> None:
+    with context.database.reading() as db:
+        check_order(db, key, request)
 
 
 @router.get("/pilots/{pilot_id}")

@@ -30,6 +30,8 @@ class StageProgress:
     remaining_s: float | None = None
 
 
+NOT_BEGUN: Final = StageProgress("check", 0, 0)
+"""The progress of a pilot that has not written any: nothing of nothing."""
 _PROGRESS: Final = TypeAdapter(StageProgress)
 
 

@@ -49,9 +49,11 @@ def new_worker() -> Worker:
 
 
 def is_in_session(db: Session) -> bool:
-    """Return whether anybody is in a session now, also a scripted participant."""
-    active = select(StudySession.id).where(StudySession.status == "active").limit(1)
-    return db.scalar(active) is not None
+    """Return whether anybody is in a session now; a simulated participant is nobody."""
+    active = select(StudySession.id).where(
+        StudySession.status == "active", StudySession.kind != "simulated"
+    )
+    return db.scalar(active.limit(1)) is not None
 
 
 @dataclass(eq=False)
@@ -97,18 +99,24 @@ class PilotQueue(ResumableJobs[PilotOrder]):
         return PilotFolder(self.folder_of(pilot_id))
 
     def look(self) -> None:
-        """Hold the pilot that runs while anybody is in a session, and let it go afterwards."""
+        """Hold the pilot that runs while anybody is in a session, and let it go afterwards.
+
+        Pilots whose study was deleted with everything in it, as the demo lab's, are ended.
+        """
         with self._lock:
-            running = [one for one, job in self._jobs.items() if job.started]
-        if not running:
+            queued = {one: job.started for one, job in self._jobs.items()}
+        if not queued:
             return
         with self.database.reading() as db:
             is_held = is_in_session(db)
-        for pilot_id in running:
+            known = set(db.scalars(select(PilotRow.id).where(PilotRow.id.in_(queued))))
+        for pilot_id, is_started in queued.items():
             files = self.files(pilot_id)
-            if not is_held:
+            if pilot_id not in known:
+                self.forget(pilot_id)
+            elif is_started and not is_held:
                 files.let_go()
-            elif files.folder.is_dir():
+            elif is_started and files.folder.is_dir():
                 files.hold()
 
     def _keep_looking(self) -> None:

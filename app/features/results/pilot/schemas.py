@@ -15,9 +15,9 @@ from app.features.results.pilot.order import (
 
 State = Literal["simulating", "stopped", "ready", "failed"]
 Avatar = Literal["physics", "delayed_copy"]
-Seed = Annotated[int, Field(ge=0, le=2**31 - 1)]
+Seed = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
 Assumed = Annotated[str, Field(min_length=1, max_length=100_000, description="YAML")]
-Counted = Annotated[int, Field(ge=FEWEST_PARTICIPANTS, le=MOST_PARTICIPANTS)]
+Counted = Annotated[int, Field(strict=True, ge=FEWEST_PARTICIPANTS, le=MOST_PARTICIPANTS)]
 
 
 class NewCohort(BaseModel):
@@ -30,7 +30,7 @@ class NewCohort(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     kind: Literal["cohort"]
-    participants: Annotated[int, Field(ge=1, le=MOST_PARTICIPANTS)] = 12
+    participants: Annotated[int, Field(strict=True, ge=1, le=MOST_PARTICIPANTS)] = 12
     seed: Seed = 1
     avatar: Avatar | None = None
     assumptions: Assumed | None = None

@@ -15,6 +15,7 @@ from app.features.design.studies import (
     used_instrument,
 )
 from app.features.movement.jobs import JobKind
+from app.features.results.pilot.folder import NOT_BEGUN
 from app.features.results.pilot.order import (
     Kind,
     PilotError,
@@ -130,14 +131,30 @@ def pilot_record(db: Session, study_key: str, pilot_id: str) -> tuple[PilotRow, 
     return row, row.record or ""
 
 
+def check_order(db: Session, study_key: str, request: NewPilot) -> None:
+    """Check what an order asks for and assumes, against the newest version of the study.
+
+    Call this before the transaction that stores the order: to explain every problem of a large file
+    of assumptions takes seconds, in which nobody else could write.
+
+    Raises NotFound, InvalidConfig for a faulty file, or InvalidInput for numbers that the study
+    does not allow, or if neither the study nor the file names a test.
+    """
+    version = newest_version(db, study_by_key(db, study_key))
+    protocol = protocol_of(version)
+    if request.kind == "power":
+        _numbers(protocol, request.participants)
+    if request.assumptions is not None:
+        _require_declared(protocol, _loaded(db, version, request.assumptions))
+
+
 def order_pilot(
     db: Session, context: AppContext, caller: Caller, study_key: str, request: NewPilot
 ) -> str:
-    """Store the order of a pilot and return its id; `follow_pilot` starts it after the commit.
+    """Store an order that was checked; return its id. `follow_pilot` starts it after the commit.
 
-    Raises NotFound, NotNow if the study is archived, InvalidConfig for a faulty file of
-    assumptions, InvalidInput for numbers that the study does not allow, Conflict if there is the
-    same pilot already, or Busy if too many are unfinished.
+    Raises NotFound, NotNow if the study is archived, InvalidInput for numbers that the study does
+    not allow, Conflict if there is the same pilot already, or Busy if too many are unfinished.
     """
     study = study_by_key(db, study_key)
     require_open(study)
@@ -150,8 +167,6 @@ def order_pilot(
         options["participants"] = list(_numbers(protocol, request.participants))
     else:
         options["avatar"] = request.avatar or _avatar_of(protocol)
-    if request.assumptions is not None:
-        _require_declared(protocol, _loaded(db, version, request.assumptions))
     row = PilotRow(
         id=new_id(),
         study_id=study.id,
@@ -271,15 +286,12 @@ def _progress(row: PilotRow, context: AppContext) -> PilotProgress | None:
         return None
     queue = context.part(PilotQueue)
     files, place = queue.files(row.id), queue.place_of(row.id)
-    told = files.progress()
+    told = files.progress() or NOT_BEGUN
     runs = row.state == "simulating"
-    if told is None:
-        return PilotProgress(
-            waiting=runs, held=False, stage="check", done=0, total=0, remaining_s=None
-        )
+    has_process = place == "started"
     return PilotProgress(
-        waiting=runs and place != "started",
-        held=runs and place == "started" and files.is_held,
+        waiting=runs and not has_process,
+        held=runs and has_process and files.is_held,
         stage=told.stage,
         done=told.done,
         total=told.total,

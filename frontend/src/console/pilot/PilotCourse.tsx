@@ -81,7 +81,7 @@ export function PilotCourse(props: PilotCourseProps): JSX.Element {
       <DeleteDialog
         isOpen={isAsking}
         title={t("pilot.delete.title")}
-        words={t("pilot.delete.words")}
+        words={t("pilot.delete.words", { what: whatOf(t, pilot) })}
         onDelete={() => pilots.remove(studyKey, id)}
         onClose={() => setAsking(false)}
         onDeleted={onDeleted}
@@ -101,7 +101,11 @@ function Course({ pilot }: { readonly pilot: Pilot }): JSX.Element | null {
   const percent = progress.total === 0 ? 0 : (100 * progress.done) / progress.total;
   return (
     <div className={classes.course}>
-      <p role="status">{state === "stopped" ? t("pilot.stopped.at", { words }) : words}</p>
+      <p role="status">
+        {state !== "stopped"
+          ? words
+          : t(progress.total === 0 ? "pilot.stopped.early" : "pilot.stopped.at", { words })}
+      </p>
       <Progress value={percent} aria-label={t("pilot.progress")} />
     </div>
   );

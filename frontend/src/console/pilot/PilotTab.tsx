@@ -8,7 +8,7 @@ import type { StudyDetail } from "@shared/api/types";
 import { dateTime } from "@shared/format";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery, useQueryClient } from "@tanstack/react-query";
-import type { JSX } from "react";
+import { type JSX, useEffect, useRef } from "react";
 import { useLocation, useSearch } from "wouter";
 import { nameOf } from "../account";
 import { useTexts } from "../i18n";
@@ -27,7 +27,7 @@ import {
   pilotQuery,
   pilotsQuery,
 } from "./pilots";
-import { whatOf } from "./words";
+import { stateOf, whatOf } from "./words";
 
 /** What names the pilot that is shown in the address. */
 const SHOWN = "pilot";
@@ -61,6 +61,14 @@ export function PilotTab({ study }: { readonly study: StudyDetail }): JSX.Elemen
     show(pilot.id);
     return refresh();
   };
+  const section = useRef<HTMLElement>(null);
+  const begun = useRef("");
+  // The pilot that was just started stands below the list, and often below the window.
+  useEffect(() => {
+    if (section.current === null || begun.current !== id || id === "") return;
+    begun.current = "";
+    section.current.scrollIntoView({ block: "start" });
+  });
   const isGone = isApiError(query.error, "not_found");
   return (
     <div className={classes.page}>
@@ -70,7 +78,16 @@ export function PilotTab({ study }: { readonly study: StudyDetail }): JSX.Elemen
       </Notice>
       {can("design") && study.archived_at === null && (
         <Loaded query={defaults} isShort>
-          {(given) => <PilotOrder studyKey={study.key} defaults={given} onStarted={put} />}
+          {(given) => (
+            <PilotOrder
+              studyKey={study.key}
+              defaults={given}
+              onStarted={(pilot) => {
+                begun.current = pilot.id;
+                return put(pilot);
+              }}
+            />
+          )}
         </Loaded>
       )}
       <Loaded query={listed} isShort>
@@ -87,7 +104,7 @@ export function PilotTab({ study }: { readonly study: StudyDetail }): JSX.Elemen
       {id !== "" && !isGone && (
         <Loaded query={query}>
           {(pilot) => (
-            <section className={classes.shown} aria-label={t("pilot.course")}>
+            <section ref={section} className={classes.shown} aria-label={t("pilot.course")}>
               <PilotCourse
                 key={pilot.id}
                 studyKey={study.key}
@@ -132,7 +149,7 @@ function Known({ known, shown, onShow }: KnownProps): JSX.Element {
             <Table.Td>
               {t("pilot.by", { who: nameOf(one.by), when: dateTime(one.at, language) })}
             </Table.Td>
-            <Table.Td>{t(`pilot.state.${one.state}`)}</Table.Td>
+            <Table.Td>{stateOf(t, one)}</Table.Td>
             <Table.Td>
               <Button
                 size="compact-xs"

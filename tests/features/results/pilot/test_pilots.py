@@ -5,12 +5,13 @@ import threading
 from pathlib import Path
 
 import pytest
-from sqlalchemy import func, select
+from sqlalchemy import delete, func, select
 
 from app.cli.pilot.inputs import read_study
 from app.features.results.pilot import PilotQueue
 from app.features.results.pilot.folder import PilotFolder, StageProgress
 from app.features.results.pilot.order import CannotSimulate, PilotOrder
+from app.features.results.pilot.pilot_queue import is_in_session
 from app.features.results.pilot.simulation import (
     CohortOrder,
     PilotStudy,
@@ -120,6 +121,38 @@ def test_a_pilot_waits_while_somebody_is_in_a_session(study: Lab) -> None:
     assert queue.files(begun["id"]).is_held
     study.command(view, "abort", reason="The test needs the processor.")
     assert settled(study, begun["id"])["state"] == "ready"
+
+
+@pytest.mark.one_engine
+def test_a_simulated_participant_holds_no_pilot(study: Lab) -> None:
+    """The demo lab and rehearsals need no pause: nobody is in their sessions."""
+    study.command(study.join(kind="simulated"), "start")
+    with study.database.reading() as db:
+        assert not is_in_session(db)
+
+
+@pytest.mark.one_engine
+def test_a_pilot_ends_with_its_deleted_study(study: Lab) -> None:
+    """A pilot whose row was deleted with its study neither goes on nor keeps its folder."""
+    view = study.command(study.join(), "start")
+    first, second = (
+        ordered(study, kind="cohort", participants=1, seed=seed)["id"] for seed in (21, 22)
+    )
+    with study.database.writing() as db:
+        db.execute(delete(PilotRow).where(PilotRow.id.in_([first, second])))
+    queue = study.context.part(PilotQueue)
+    queue.look()
+    assert [queue.place_of(one) for one in (first, second)] == [None, None]
+    assert not any(queue.files(one).folder.exists() for one in (first, second))
+    study.command(view, "abort", reason="The test needs the processor.")
+
+
+@pytest.mark.one_engine
+def test_a_faulty_file_of_assumptions_holds_up_no_writer(study: Lab) -> None:
+    """A file of assumptions is checked before the order takes its turn to write."""
+    order = {"kind": "cohort", "participants": 1, "assumptions": "nonsense: 1\n"}
+    with study.database.write_turn():
+        error(study.operator.post(PATH, json=order), 422, "invalid_config")
 
 
 @pytest.mark.one_engine

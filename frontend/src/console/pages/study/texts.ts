@@ -68,10 +68,10 @@ const exportsEn = {
     "With movement, the poses in which the participant was shown another person, if any.",
   "export.file.samples": "samples/*.csv, fingers/*.csv",
   "export.about.samples":
-    "One file per session: target and actual pose of every frame, side by side; those of the fingers apart, if any.",
+    "With movement, one file per session: target and actual pose of every frame, side by side; those of the fingers apart, if any.",
   "export.file.receipts": "receipts/*.json",
   "export.about.receipts":
-    "One per session: how many frames were produced, are stored and are missing, with proof.",
+    "With movement, one per session: how many frames were produced, are stored and are missing, with proof.",
   "export.file.protocol": "protocol/*.yaml",
   "export.about.protocol":
     "Each version of the study as it was run, and its instruments: wording, scales and formulas.",
@@ -154,10 +154,10 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
     "Mit Bewegung die Haltungen, in denen die Person eine andere gezeigt bekam.",
   "export.file.samples": "samples/*.csv, fingers/*.csv",
   "export.about.samples":
-    "Eine Datei je Sitzung: Ziel- und Ist-Haltung jedes Bildes nebeneinander; die der Finger für sich, falls es sie gibt.",
+    "Mit Bewegung eine Datei je Sitzung: Ziel- und Ist-Haltung jedes Bildes nebeneinander; die der Finger für sich, falls es sie gibt.",
   "export.file.receipts": "receipts/*.json",
   "export.about.receipts":
-    "Einer je Sitzung: wie viele Bilder entstanden, gespeichert sind und fehlen, mit Nachweis.",
+    "Mit Bewegung einer je Sitzung: wie viele Bilder entstanden, gespeichert sind und fehlen, mit Nachweis.",
   "export.file.protocol": "protocol/*.yaml",
   "export.about.protocol":
     "Jede Version der Studie, wie sie lief, und ihre Instrumente: Wortlaut, Skalen und Formeln.",
