@@ -28,6 +28,8 @@ _EXPECTED = {
     "mapping_type": ("a mapping of languages", "Write for example {en: ..., de: ...}."),
 }
 _MAX_SHOWN = 200
+MOST_EXPLAINED = 200
+"""How many problems are explained; the others are counted."""
 _LIMITS = {
     "greater_than": ("gt", "above"),
     "greater_than_equal": ("ge", "at least"),
@@ -37,9 +39,17 @@ _LIMITS = {
 
 
 def explain(error: ValidationError, schema: Schema, source: Source) -> Iterable[ConfigProblem]:
-    """Yield each pydantic error as a problem with path, line, column, valid values and remedy."""
+    """Yield each pydantic error as a problem with path, line, column, valid values and remedy.
+
+    Of thousands, which take seconds to explain and nobody reads, only the first are explained.
+    """
     findings = error.errors(include_url=False)
-    for details in findings:
+    if len(findings) > MOST_EXPLAINED:
+        yield ConfigProblem(
+            "", 1, 1, f"There are {len(findings)} problems; the first {MOST_EXPLAINED} are listed.",
+            remedy="Correct these and check it again, or make sure that it is the right file.",
+        )  # fmt: skip
+    for details in findings[:MOST_EXPLAINED]:
         path = _tree_path(details["loc"], source.tree, missing=details["type"] == "missing")
         if _is_echo(details, findings) or path in source.refused:
             continue
@@ -65,7 +75,7 @@ def did_you_mean(given: object, valid: Iterable[str]) -> str:
 
     Like it are words that differ in a few letters, and those that begin with it.
     """
-    words, typed = list(valid), str(given)
+    words, typed = list(valid), str(given)[:_MAX_SHOWN]
     close = difflib.get_close_matches(typed, words, n=1) or [
         word for word in words if typed and word.startswith(typed)
     ]

@@ -18,6 +18,7 @@ from app.science.statistics import (
     bootstrap_interval,
     cronbach_alpha,
     friedman,
+    mean_interval,
     mean_of,
     median_of,
     page_trend,
@@ -76,6 +77,7 @@ ABOUT = {
     "sequence": About("measure", "Sequence"),
     "clmm_laplace": About("item", "Cumulative link mixed model, latency, likelihood ratio"),
     "alpha_interval": About("scale", "Cronbach's alpha, Feldt's interval", "coverage"),
+    "student_mean": About("measure", "Mean difference, Student's interval", "coverage"),
     "bca_mean": About("measure", "Mean difference, BCa bootstrap", "coverage"),
     "bca_median": About("measure", "Median difference, BCa bootstrap", "coverage"),
 }
@@ -159,6 +161,8 @@ def intervals(data: NullData, alpha: float, rng: np.random.Generator) -> Outcome
     found = cronbach_alpha(data.scale)
     yield "alpha_interval", found.low <= alpha <= found.high
     differences = data.measure[:, -1, 0] - data.measure[:, 0, 0]
+    student = mean_interval(differences)
+    yield "student_mean", student.low <= 0.0 <= student.high
     for name, statistic in (("bca_mean", mean_of), ("bca_median", median_of)):
         interval = bootstrap_interval(differences, statistic, rng=rng)
         yield name, interval.low <= 0.0 <= interval.high

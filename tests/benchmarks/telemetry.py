@@ -1,8 +1,8 @@
 """Measure fifty headsets in parallel: time until data are durable and shown, and server load.
 
 Parts: `load` on SQLite, `load-postgresql` on a durable PostgreSQL, `knee` (how many sessions are
-too many), `backlog` (one reconnects with ten minutes in its journal), `peers` (other systems with
-the same frames).
+too many), `backlog` (one reconnects with ten minutes in its journal), `memory` (whether the
+server's grows within an hour, `--minutes 60`), `peers` (other systems with the same frames).
 """
 
 import tempfile
@@ -13,6 +13,7 @@ from tests.benchmarks.load.backlog import backlog_figures
 from tests.benchmarks.load.durable_postgres import durable_postgres
 from tests.benchmarks.load.figures import load_figures
 from tests.benchmarks.load.knee import STEP_S, knee_figures
+from tests.benchmarks.load.memory import memory_figures
 from tests.benchmarks.load.plans import Load
 from tests.benchmarks.load.scenario import run_load
 from tests.benchmarks.peers.figures import peer_figures
@@ -50,6 +51,10 @@ def _backlog(folder: Path, duration_s: float) -> Iterable[Figure]:
     return backlog_figures("backlog", folder, duration_s)
 
 
+def _memory(folder: Path, duration_s: float) -> Iterable[Figure]:
+    return memory_figures("memory", folder, duration_s)
+
+
 def _peers(folder: Path, duration_s: float) -> Iterable[Figure]:
     return peer_figures("peers", folder, duration_s)
 
@@ -59,6 +64,7 @@ _PARTS: dict[str, Part] = {
     "load-postgresql": _load_postgresql,
     "knee": _knee,
     "backlog": _backlog,
+    "memory": _memory,
     "peers": _peers,
 }
 PARTS = tuple(_PARTS)

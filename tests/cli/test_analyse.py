@@ -138,16 +138,6 @@ def test_the_trend_of_tied_answers_is_exact_given_the_ties(tmp_path: Path) -> No
     assert printed in text
 
 
-def test_the_same_seed_gives_the_same_intervals(tmp_path: Path) -> None:
-    """The seed determines the bootstrap intervals and nothing else."""
-    path = _written(tmp_path, _six())
-    one, repeated = (_COMMAND.figures(path, *_FACTOR) for _ in range(2))
-    other = _COMMAND.figures(path, *_FACTOR, "--seed", 2)
-    assert one == repeated
-    assert one["means"] != other["means"]
-    assert one["friedman"] == other["friedman"]
-
-
 def test_the_order_of_rows_and_the_separator_do_not_matter(tmp_path: Path) -> None:
     """The result does not depend on row order, separator, decimal commas or a byte order mark."""
     head, *rows = _lines()
@@ -548,7 +538,7 @@ def test_a_code_of_missing_values_is_named_and_can_be_declared(tmp_path: Path) -
 
 
 def test_a_contrast_has_one_interval_whatever_else_is_asked(tmp_path: Path) -> None:
-    """The bootstrap interval of 0 - 125 is the same with and without the rows of 350."""
+    """The interval of 0 - 125 is the same with and without the rows of 350."""
     path = _written(tmp_path, _six())
     whole = _COMMAND.figures(path, *_FACTOR)["pairwise"][0]
     two = [row for row in _six() if ",350," not in row]

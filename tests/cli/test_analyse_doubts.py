@@ -198,22 +198,22 @@ def test_every_doubt_reaches_the_output(tmp_path: Path) -> None:
         "--missing -99 stands in no cell",
     ):
         assert any(words in one for one in figures["warnings"]), words
-    assert figures["no_intervals_because"] is None
     text = _COMMAND.run(path, *asked).stdout.splitlines()
     assert "Read: score has decimal commas in 2 rows: 3,3 in line 14 was read as 3.3." in text
 
 
-def test_fewer_than_six_people_have_no_interval(tmp_path: Path) -> None:
-    """Five people have means and differences, but no interval, and the output says why."""
-    rows = [f"P{who},{at},{who % 3 + at / 100}" for who in range(5) for at in (0, 125)]
+def test_few_people_have_wide_intervals(tmp_path: Path) -> None:
+    """Three differences of 1, 2 and 3 have the interval 2 +- 4.303 / sqrt(3), one person has none.
+
+    4.303 is the 97.5 % point of Student's t with two degrees of freedom, as in any table of it.
+    """
+    rows = [f"P{who},{at},{who * at / 125}" for who in (1, 2, 3) for at in (0, 125)]
     path = _written(tmp_path, rows)
-    figures = _COMMAND.figures(path, *_FACTOR)
-    assert figures["means"][0]["ci"] is None
-    assert figures["pairwise"][0]["mean_difference_ci"] is None
-    assert figures["pairwise"][0]["mean_difference"] == pytest.approx(-1.25)
-    reason = "rom fewer than 6 people, as few as 5 here: it would be too narrow"
-    assert reason in figures["no_intervals_because"]
-    assert reason in _COMMAND.run(path, *_FACTOR).stdout
+    (pair,) = _COMMAND.figures(path, *_FACTOR)["pairwise"]
+    assert pair["mean_difference"] == pytest.approx(-2.0)
+    reach = 4.3027 / 3**0.5
+    ends = (pair["mean_difference_ci"][one] for one in ("low", "high"))
+    assert tuple(ends) == pytest.approx((-2.0 - reach, -2.0 + reach), abs=1e-4)
 
 
 def test_differences_that_only_rounding_makes_zero_are_called_so(tmp_path: Path) -> None:

@@ -149,6 +149,15 @@ def test_a_damaged_stored_study_is_rejected() -> None:
         parse_instrument_json("not json")
 
 
+def test_of_thousands_of_problems_the_first_are_explained() -> None:
+    """A file of another kind has thousands of problems: they are counted, two hundred explained."""
+    text = STUDY + "".join(f"key_{number}: 1\n" for number in range(3000))
+    with pytest.raises(ConfigError) as caught:
+        load_study(text, instruments={})
+    assert len(caught.value.problems) < 300
+    assert "There are 3000 problems; the first 200 are listed." in str(caught.value)
+
+
 def test_problems_are_serialised_as_json() -> None:
     """Problems can be serialised as JSON for the console."""
     (problem,) = problems(edited(("replicates: 2", "replicates: 0")))

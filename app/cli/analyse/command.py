@@ -43,7 +43,6 @@ def analyse(
     art: Annotated[
         bool, typer.Option("--art", help="Also the aligned rank transform, which is contested.")
     ] = False,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap intervals.")] = 1,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Compare within-subject conditions: Friedman, Wilcoxon with Holm, Page, repeated ANOVA."""
@@ -57,7 +56,6 @@ def analyse(
         within,
         measure,
         reference,
-        seed,
         art,
         where=tuple(where or ()),
         declared_orders=tuple(order or ()),

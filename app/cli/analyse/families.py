@@ -10,8 +10,6 @@ from functools import partial
 from itertools import combinations
 from typing import TypeVar
 
-import numpy as np
-
 from app.science.statistical_tests import TESTS, Outcome, Sample
 from app.science.statistics import (
     AgainstReference,
@@ -19,24 +17,22 @@ from app.science.statistics import (
     Comparison,
     FloatArray,
     Friedman,
-    Interval,
+    MeanInterval,
     PageTrend,
     StatisticsError,
+    TooFewData,
     against_reference,
-    bootstrap_interval,
     complete_rows,
     friedman,
-    mean_of,
     page_trend,
     pairwise,
     place_of,
 )
+from app.science.statistics import mean_interval as interval_of
 
 T = TypeVar("T")
 OWN_OUTPUT = frozenset({"friedman", "page_trend", "rm_anova", "against_reference"})
 """Registered tests that have their own fields in the output."""
-LEAST_PEOPLE = 6
-"""Fewest people with an interval; of fewer, no exact test can reach 5 % either."""
 _MOST_FACTORS = 2
 _TWO = 2
 
@@ -64,7 +60,7 @@ class Family:
         ordered: whether the levels have an order: they are numbers, or it was declared.
         page: Page's trend test, for three levels or more that have an order.
         mean_differences: of each pair, in the order of `pairs`.
-        intervals: of these; None from fewer than six people.
+        intervals: Student's, of these; None of a single person.
         planned: each level against the reference, if one was named; Holm-corrected separately.
         further: by key, the outcomes of the registry's other tests.
     """
@@ -75,7 +71,7 @@ class Family:
     page: PageTrend | None
     pairs: tuple[Comparison, ...]
     mean_differences: tuple[float, ...]
-    intervals: tuple[Interval | None, ...]
+    intervals: tuple[MeanInterval | None, ...]
     planned: AgainstReference | None
     further: dict[str, Outcome]
 
@@ -84,7 +80,6 @@ def families_of(
     cells: Cells,
     reference: str | None,
     ordered: frozenset[str],
-    seed: int,
     warnings: list[str],
 ) -> list[Family]:
     """Test each factor averaged over the other, then the first at each level of the second.
@@ -107,13 +102,13 @@ def families_of(
                 f" one with --order '{factor}={','.join(levels)}'"
             )
         values = cells.of_factor(axis)
-        found.append(_family_of(question, values, against, seed, warnings, ordered=has_trend))
+        found.append(_family_of(question, values, against, warnings, ordered=has_trend))
     if len(names) == _MOST_FACTORS:
         for place, level in enumerate(cells.levels[1]):
             question = Question(names[0], cells.levels[0], at={names[1]: level})
             values = cells.values[:, :, place]
             has_trend = names[0] in ordered
-            found.append(_family_of(question, values, reference, seed, warnings, ordered=has_trend))
+            found.append(_family_of(question, values, reference, warnings, ordered=has_trend))
     return found
 
 
@@ -121,7 +116,6 @@ def _family_of(
     question: Question,
     values: FloatArray,
     reference: str | None,
-    seed: int,
     warnings: list[str],
     *,
     ordered: bool,
@@ -150,7 +144,7 @@ def _family_of(
         page=tried(lambda: page_trend(whole), warnings, where) if has_trend else None,
         pairs=pairs,
         mean_differences=tuple(float(one.mean()) for one in differences),
-        intervals=tuple(mean_interval(one, seed) for one in differences),
+        intervals=tuple(mean_interval(one) for one in differences),
         planned=tried(lambda: against_reference(values, levels, reference), warnings, where)
         if reference is not None
         else None,
@@ -199,12 +193,9 @@ def tried(compute: Callable[[], T], warnings: list[str], where: str = "") -> T |
         return None
 
 
-def mean_interval(values: FloatArray, seed: int) -> Interval | None:
-    """Return the bootstrap interval of the mean; None for fewer than six values.
-
-    Every interval is drawn from the seed anew: the same values have the same interval in every
-    table, whatever else was asked for.
-    """
-    if values.size < LEAST_PEOPLE:
+def mean_interval(values: FloatArray) -> MeanInterval | None:
+    """Return Student's interval of the mean; None for fewer than two values."""
+    try:
+        return interval_of(values)
+    except TooFewData:
         return None
-    return bootstrap_interval(values, mean_of, rng=np.random.default_rng(seed))

@@ -10,7 +10,7 @@ from app.science.statistics import (
     AgainstReference,
     AlignedRanks,
     Comparison,
-    Interval,
+    MeanInterval,
     RmAnova,
 )
 
@@ -19,10 +19,8 @@ _LEAST_P = 0.0001
 _WIDTH = 18
 _LEGEND = (
     "Holm: over the pairs of one table. r: matched rank-biserial, positive if the first is larger.",
-    "CI: 95 %, bootstrap over subjects (BCa), seed {seed}.",
+    "CI: 95 %, Student's t, for values that are approximately normal.",
 )
-_NARROW = "With few subjects it is too narrow: with a dozen, about 90 % contain the true value."
-_MANY = 30
 
 
 def as_text(done: Analysis) -> str:
@@ -46,11 +44,7 @@ def as_text(done: Analysis) -> str:
         lines += ["", *_anova(done.rm_anova)]
     if done.aligned is not None:
         lines += ["", *_aligned(done.aligned)]
-    lines += ["", *(line.format(seed=order.seed) for line in _LEGEND)]
-    if len(cells.subjects) < _MANY:
-        lines.append(_NARROW)
-    if done.no_intervals_because is not None:
-        lines.append(f"CI: {done.no_intervals_because[0].lower()}{done.no_intervals_because[1:]}.")
+    lines += ["", *_LEGEND]
     others = (one.rstrip(".") for one in done.warnings if one not in done.alike)
     lines += [f"Note: {warning}." for warning in others]
     return "\n".join(lines)
@@ -173,5 +167,5 @@ def _figure(value: float) -> str:
     return _NONE if math.isnan(value) else f"{value:.4g}"
 
 
-def _ends(one: Interval | None) -> str:
+def _ends(one: MeanInterval | None) -> str:
     return _NONE if one is None else f"[{_figure(one.low)}, {_figure(one.high)}]"

@@ -10,7 +10,7 @@ from app.science.statistics import (
     Comparison,
     Effect,
     Friedman,
-    Interval,
+    MeanInterval,
     PageTrend,
 )
 
@@ -51,9 +51,7 @@ def as_json(done: Analysis) -> dict[str, Any]:
             "rule": "listwise for Friedman, Page and ANOVA; pairwise for Wilcoxon; none imputed",
         },
         "read_as": list(done.read_as),
-        "no_intervals_because": done.no_intervals_because,
         "warnings": done.warnings,
-        "seed": done.order.seed,
     }
     return {key: _finite(one) for key, one in result.items()}
 
@@ -109,7 +107,7 @@ def _friedman(test: Friedman | None) -> dict[str, Any] | None:
     return {**_values(test, *named), "mean_ranks": list(test.mean_ranks)}
 
 
-def _pair(one: Comparison, mean: float, interval: Interval | None) -> dict[str, Any]:
+def _pair(one: Comparison, mean: float, interval: MeanInterval | None) -> dict[str, Any]:
     return {
         **_tested(one),
         "mean_difference": mean,
@@ -167,10 +165,10 @@ def _effect(one: Effect) -> dict[str, Any]:
     }
 
 
-def _interval(one: Interval | None) -> dict[str, Any] | None:
+def _interval(one: MeanInterval | None) -> dict[str, Any] | None:
     if one is None:
         return None
-    return _values(one, "low", "high", "confidence", "method")
+    return _values(one, "low", "high", "confidence")
 
 
 def _values(one: object, *names: str) -> dict[str, Any]:

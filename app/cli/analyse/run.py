@@ -15,7 +15,7 @@ from app.cli.analyse.doubts import (
     split_decimals,
     unused_codes,
 )
-from app.cli.analyse.families import LEAST_PEOPLE, Family, families_of, mean_interval, tried
+from app.cli.analyse.families import Family, families_of, mean_interval, tried
 from app.cli.analyse.inputs import TidyInput, read_tidy
 from app.cli.analyse.people import alike_subjects, same_people, summary_rows
 from app.science.statistics import (
@@ -23,7 +23,7 @@ from app.science.statistics import (
     Cells,
     Complete,
     ConstantData,
-    Interval,
+    MeanInterval,
     RmAnova,
     StatisticsError,
     TooFewData,
@@ -47,7 +47,6 @@ class AnalyseOrder:
     within: list[str]
     measure: str
     reference: str | None
-    seed: int
     art: bool
     where: tuple[str, ...] = ()
     """Conditions COLUMN=VALUE that a row must fulfil."""
@@ -67,7 +66,7 @@ class CellMean:
     n: int
     sd: float
     median: float
-    interval: Interval | None
+    interval: MeanInterval | None
     mean: float
 
 
@@ -92,20 +91,6 @@ class Analysis:
     alike: tuple[str, ...] = ()
     """The warnings about names, levels and numbers that may be mistaken, which come first."""
     warnings: list[str] = field(default_factory=list)
-
-    @property
-    def no_intervals_because(self) -> str | None:
-        """Why some mean has no interval; None if all have one."""
-        sizes = [one.n for one in self.means if one.interval is None]
-        for family in self.families:
-            pairs = zip(family.pairs, family.intervals, strict=True)
-            sizes += [pair.test.n for pair, interval in pairs if interval is None]
-        if not sizes:
-            return None
-        return (
-            f"None from fewer than {LEAST_PEOPLE} people, as few as {min(sizes)} here: it would be"
-            " too narrow, and no exact test of so few can reach 5 %"
-        )
 
 
 def carry_out(order: AnalyseOrder) -> Analysis:
@@ -167,8 +152,8 @@ def carry_out(order: AnalyseOrder) -> Analysis:
         order=order,
         cells=cells,
         complete=complete,
-        means=tuple(_means(cells, order.seed)),
-        families=tuple(families_of(cells, order.reference, ordered, order.seed, warnings)),
+        means=tuple(_means(cells)),
+        families=tuple(families_of(cells, order.reference, ordered, warnings)),
         rm_anova=tried(lambda: rm_anova(complete.values, cells.factors), warnings),
         aligned=tried(lambda: aligned_ranks_within(complete.values, cells.factors), warnings)
         if order.art
@@ -251,7 +236,7 @@ def _warnings(cells: Cells, complete: Complete, read: TidyInput) -> list[str]:
     return warnings
 
 
-def _means(cells: Cells, seed: int) -> list[CellMean]:
+def _means(cells: Cells) -> list[CellMean]:
     found = []
     for where in np.ndindex(*cells.values.shape[1:]):
         levels = {
@@ -266,7 +251,7 @@ def _means(cells: Cells, seed: int) -> list[CellMean]:
                 mean=float(column.mean()) if column.size else float("nan"),
                 sd=float(column.std(ddof=1)) if column.size > 1 else float("nan"),
                 median=float(np.median(column)) if column.size else float("nan"),
-                interval=mean_interval(column, seed),
+                interval=mean_interval(column),
             )
         )
     return found

@@ -38,7 +38,11 @@ from app.science.statistics.errors import ConstantData, StatisticsError, TooFewD
 from app.science.statistics.exploring import Explored, explore
 from app.science.statistics.friedman import Friedman, friedman
 from app.science.statistics.levels import as_number, has_order, ordered_levels, place_of
-from app.science.statistics.mean_intervals import mean_interval, within_subject_intervals
+from app.science.statistics.mean_intervals import (
+    MeanInterval,
+    mean_interval,
+    within_subject_intervals,
+)
 from app.science.statistics.page import PageTrend, page_trend
 from app.science.statistics.pairwise import Comparison, holm, pairwise
 from app.science.statistics.planned import (
@@ -80,6 +84,7 @@ __all__ = [
     "IntArray",
     "Interval",
     "Kind",
+    "MeanInterval",
     "PageTrend",
     "RmAnova",
     "Spearman",

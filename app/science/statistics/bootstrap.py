@@ -6,8 +6,8 @@ changes with its value (acceleration, from leaving out one subject at a time). E
 Stat. Assoc. 82:171-185; computed by scipy.stats.bootstrap.
 
 With a dozen subjects the intervals are too narrow: for the mean, at n = 12, a 95 % interval covered
-the true value in 90 % of normal and 89 % of skewed (gamma) samples. `mean_intervals` uses Student's
-t instead.
+the true value in 90 % of normal and 89 % of skewed (gamma) samples. So means have Student's
+interval instead (`mean_intervals`), and this is for statistics that have no other.
 """
 
 import math

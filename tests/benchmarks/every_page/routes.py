@@ -8,7 +8,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-_TABLE = Path(__file__).parents[3] / "frontend" / "src" / "console" / "Routes.tsx"
+_CONSOLE = Path(__file__).parents[3] / "frontend" / "src" / "console"
+_TABLE = _CONSOLE / "Routes.tsx"
+_PLACES = _CONSOLE / "frame" / "places.ts"
 
 KINDS_OF_RESULTS = "?kind=simulated"
 
@@ -57,6 +59,7 @@ ROUTES: tuple[Route, ...] = (
     _study("statistics", KINDS_OF_RESULTS),
     _study("preregistration"),
     _study("export"),
+    _study("pilot"),
     _study("protocol"),
     _study("versions"),
     _study("suggestions"),
@@ -104,9 +107,11 @@ ROUTES: tuple[Route, ...] = (
 
 
 def forgotten_paths() -> list[str]:
-    """Return the paths of the console's table of routes that no route here leads to."""
+    """Return the paths of the console, also of a study's sections, that no route here leads to."""
     looked_at = [route.name.removeprefix("/#") for route in ROUTES]
     paths = re.findall(r'path="([^"]+)"', _TABLE.read_text(encoding="utf-8"))
+    sections = re.findall(r'section: "([^"]+)"', _PLACES.read_text(encoding="utf-8"))
+    paths += [f"/studies/:study/{section}" for section in sections]
     return [path for path in paths if not any(map(_pattern(path).fullmatch, looked_at))]
 
 

@@ -11,7 +11,7 @@ from tests.benchmarks.load.scenario import Outcome
 from tests.benchmarks.load.streaming import FRAMES_PER_BATCH, batch_of
 from tests.benchmarks.report import Figure
 
-ACK_LIMIT_MS, CONSOLE_LIMIT_MS = 250.0, 200.0
+ACK_LIMIT_MS, CONSOLE_LIMIT_MS = 200.0, 150.0
 ACTUAL = STREAMS.index(StreamName.ACTUAL.value)
 MIB = 2.0**20
 

@@ -181,10 +181,10 @@ def version_by_number(db: Session, study: Study, number: int) -> StudyVersion:
 
 
 def require_open(study: Study) -> None:
-    """Raise NotNow if the study is archived, because it takes no new sessions."""
+    """Raise NotNow if the study is archived, because it takes no new sessions and pilots."""
     if study.archived_at is not None:
         raise NotNow(
-            f"the study {study.key!r} is archived and takes no new sessions",
+            f"the study {study.key!r} is archived, so nothing new can be started in it",
             value=study.key,
             remedy="Restore it on its page, or choose another study.",
         )

@@ -190,8 +190,8 @@ class GlanceView(BaseModel):
 class EffectView(BaseModel):
     """The difference between the ends of the factor in one limb, in the measure's unit.
 
-    `low`, `high`: the 95 % interval of the mean difference; null if n is too small. `standardised`:
-    Cohen's d_av with the interval on the same scale; null where nothing varies.
+    `low`, `high`: Student's 95 % interval of the mean difference; null if they are equal.
+    `standardised`: Cohen's d_av with the interval on the same scale; null where nothing varies.
     """
 
     limb: str

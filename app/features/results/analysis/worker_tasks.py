@@ -53,8 +53,8 @@ def sheet(
 
 def compute(url: str, study_key: str, kind: DashboardKind) -> bytes:
     """Return the results of the study's tests as JSON."""
-    # Imported here because it loads scipy and statsmodels, which figures do not need.
-    from app.features.results.analysis.questions import answers_of
+    # Imported here because it loads scipy and every test, which figures do not need.
+    from app.features.results.analysis.questions.answers import answers_of
 
     with _material(url, study_key, kind) as material:
         return answers_of(material).model_dump_json().encode()

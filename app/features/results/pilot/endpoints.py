@@ -4,6 +4,7 @@ from fastapi import APIRouter, Response
 from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
+from app.features.design.studies import require_open, study_by_key
 from app.features.results.pilot.pilot_queue import PilotQueue
 from app.features.results.pilot.schemas import NewPilot, PilotDefaults, PilotListed, PilotView
 from app.features.results.pilot.service import (
@@ -84,6 +85,7 @@ async def resume_pilot(key: str, pilot_id: str, context: Context, caller: Signed
 
     def resume(db: Session) -> None:
         pilot_of(db, key, pilot_id)
+        require_open(study_by_key(db, key))
         PILOTS.resume(db, context, caller, pilot_id)
 
     await write(context, resume)

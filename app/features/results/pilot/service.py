@@ -119,7 +119,11 @@ def pilot_of(db: Session, study_key: str, pilot_id: str) -> PilotRow:
     study = study_by_key(db, study_key)
     row = PILOTS.by_id(db, pilot_id)
     if row.study_id != study.id:
-        raise NotFound("the study has no such pilot", value=pilot_id)
+        raise NotFound(
+            "the study has no such pilot",
+            value=pilot_id,
+            remedy="Open one from the study's list of pilots; it may have been deleted.",
+        )
     return row
 
 
@@ -173,7 +177,8 @@ def order_pilot(
         study_version_id=version.id,
         kind=request.kind,
         options=options,
-        assumptions=request.assumptions,
+        # A line end more or less makes no other pilot.
+        assumptions=request.assumptions and request.assumptions.rstrip() + "\n",
         state="simulating",
         by=caller.actor,
         at=context.clock.utc_now(),

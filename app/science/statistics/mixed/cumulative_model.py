@@ -26,7 +26,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import scipy.stats
+from scipy.special import ndtr, ndtri
 
 from app.science.statistics.arrays import FloatArray, IntArray
 from app.science.statistics.mixed.cumulative_likelihood import Answers
@@ -187,11 +187,11 @@ def _thresholds(levels: list[int], found: Found) -> tuple[Threshold, ...]:
 
 def _effects(names: Sequence[str], found: Found) -> tuple[CumulativeEffect, ...]:
     errors = found.errors[len(found.at.thresholds) : -1]
-    half = float(scipy.stats.norm.ppf((1.0 + _LEVEL) / 2.0))
+    half = float(ndtri((1.0 + _LEVEL) / 2.0))
     effects = []
     for name, value, se in zip(names, found.at.beta.tolist(), errors.tolist(), strict=True):
         z = value / se
-        p = 2.0 * float(scipy.stats.norm.sf(abs(z)))
+        p = 2.0 * float(ndtr(-abs(z)))
         low, high = value - half * se, value + half * se
         effects.append(CumulativeEffect(name, value, se, z, p, low, high))
     return tuple(effects)

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.stats
+from scipy.special import chdtrc, ndtr, ndtri
 
 from app.science.statistics.arrays import IntArray
 from app.science.statistics.mixed.cumulative_links import Link
@@ -76,7 +76,7 @@ def likelihood_ratio(small: CumulativeModel, large: CumulativeModel) -> Likeliho
     return LikelihoodRatio(
         statistic=statistic,
         df=df,
-        p=float(scipy.stats.chi2.sf(statistic, df)),
+        p=float(chdtrc(df, statistic)),
         converged=small.converged and large.converged,
         method=method_of(large),
     )
@@ -188,7 +188,7 @@ def cumulative_contrasts(
 def _effect(model: CumulativeModel, name: str, row: np.ndarray) -> CumulativeEffect:
     value = float(row @ [each.estimate for each in model.effects])
     se = float(np.sqrt(row @ model.covariance @ row))
-    half = float(scipy.stats.norm.ppf((1.0 + _LEVEL) / 2.0)) * se
+    half = float(ndtri((1.0 + _LEVEL) / 2.0)) * se
     z = value / se
-    p = 2.0 * float(scipy.stats.norm.sf(abs(z)))
+    p = 2.0 * float(ndtr(-abs(z)))
     return CumulativeEffect(name, value, se, z, p, value - half, value + half)

@@ -21,7 +21,7 @@ J Stat Softw 82(13); Holm 1979, Scand J Stat 6, 65.
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.stats
+from scipy.special import fdtrc, stdtr, stdtrit
 
 from app.science.statistics.arrays import FloatArray
 from app.science.statistics.mixed.design import marginal_weights, pairs_of, term_contrasts
@@ -127,7 +127,7 @@ def term_test(model: MixedModel, term: str) -> TermTest:
     f = float(np.mean(values**2 / sizes[kept]))
     error = _joined_df([degrees_of_freedom(model, row) for row in rotated])
     count = int(kept.sum())
-    return TermTest(term, f, count, error, float(scipy.stats.f.sf(f, count, error)))
+    return TermTest(term, f, count, error, float(fdtrc(count, error, f)))
 
 
 def marginal_means(model: MixedModel, factor: str, by: str = "") -> tuple[MarginalMean, ...]:
@@ -175,8 +175,8 @@ def estimate(model: MixedModel, row: FloatArray) -> Estimate:
     se = float(np.sqrt(row @ model.restricted.covariance @ row))
     df = degrees_of_freedom(model, row)
     t = value / se
-    half = float(scipy.stats.t.ppf((1.0 + _LEVEL) / 2.0, df)) * se
-    p = 2.0 * float(scipy.stats.t.sf(abs(t), df))
+    half = float(stdtrit(df, (1.0 + _LEVEL) / 2.0)) * se
+    p = 2.0 * float(stdtr(df, -abs(t)))
     return Estimate(value, se, df, t, p, value - half, value + half)
 
 

@@ -18,7 +18,7 @@ import {
   lineNumbers,
 } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
-import type { ConfigProblem } from "@shared/api/types";
+import type { Problem } from "@shared/api/request";
 import { type JSX, type RefObject, useEffect, useRef } from "react";
 import classes from "./Editor.module.css";
 
@@ -26,7 +26,7 @@ interface YamlFieldProps {
   /** The initial text; from then on the field owns it. */
   readonly initial: string;
   readonly label: string;
-  readonly problems: readonly ConfigProblem[];
+  readonly problems: readonly Problem[];
   readonly field: RefObject<YamlText | null>;
   readonly onChange: (text: string, byForm: boolean) => void;
 }
@@ -177,18 +177,18 @@ function stretch(before: string, after: string) {
 }
 
 /** Mark each problem from its position to the end of its line. */
-function markProblems(view: EditorView, problems: readonly ConfigProblem[]): void {
+function markProblems(view: EditorView, problems: readonly Problem[]): void {
   const { doc } = view.state;
   const marks: Diagnostic[] = problems
-    .filter((problem) => problem.line >= 1)
+    .filter((problem) => (problem.line ?? 0) >= 1)
     .map((problem) => {
-      const line = doc.line(Math.min(problem.line, doc.lines));
-      const from = Math.min(line.from + Math.max(problem.column - 1, 0), line.to);
+      const line = doc.line(Math.min(problem.line ?? 1, doc.lines));
+      const from = Math.min(line.from + Math.max((problem.column ?? 1) - 1, 0), line.to);
       return {
         from,
         to: Math.max(line.to, from),
         severity: "error",
-        message: `${problem.path === "" ? "" : `${problem.path}: `}${problem.message} ${problem.remedy ?? ""}`,
+        message: `${problem.path ? `${problem.path}: ` : ""}${problem.message} ${problem.remedy ?? ""}`,
       };
     });
   view.dispatch(setDiagnostics(view.state, marks));

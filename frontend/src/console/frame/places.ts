@@ -59,7 +59,7 @@ export const SECTIONS = [
   {
     section: "statistics",
     group: "results",
-    icon: "form",
+    icon: "sigma",
     name: "study.tab.statistics",
     permission: "compare",
   },
@@ -87,7 +87,7 @@ export const SECTIONS = [
   {
     section: "pilot",
     group: "design",
-    icon: "body",
+    icon: "flask",
     name: "study.tab.pilot",
     permission: "compare",
   },
@@ -109,10 +109,10 @@ export const LAB_PAGES: readonly LabPage[] = [
   { href: "/bodies", group: "design", icon: "body", name: "bodies.title" },
   { href: "/avatars", group: "design", icon: "joint", name: "avatars.title" },
   { href: "/walking", group: "design", icon: "foot", name: "walking.title" },
-  { href: "/equipment", group: "lab", icon: "headset", name: "equipment.title" },
+  { href: "/equipment", group: "lab", icon: "tablet", name: "equipment.title" },
   { href: "/trackers", group: "lab", icon: "plug", name: "trackers.title" },
   { href: "/network", group: "lab", icon: "link", name: "network.title", permission: "network" },
-  { href: "/storage", group: "lab", icon: "chart", name: "storage.title", permission: "storage" },
+  { href: "/storage", group: "lab", icon: "disk", name: "storage.title", permission: "storage" },
   { href: "/people", group: "lab", icon: "key", name: "people.title", permission: "people" },
 ];
 

@@ -14,7 +14,11 @@ export function LabState({ state }: { readonly state: State }): JSX.Element {
     <div className={classes.state}>
       <Panel id="today" title={t("home.today")} none={t("home.today.none")}>
         {state.today.map((one) => (
-          <Line key={one.session_id} session={one} at={timeOfDay(one.at, language)}>
+          <Line
+            key={one.session_id}
+            session={one}
+            at={t(sinceWhen(one), { time: timeOfDay(one.at, language) })}
+          >
             <StatusBadge status={one.status} />
             {one.kind !== "people" && <KindBadge kind={one.kind} />}
           </Line>
@@ -33,6 +37,12 @@ export function LabState({ state }: { readonly state: State }): JSX.Element {
       </Panel>
     </div>
   );
+}
+
+/** What the time of a session is of: the last change of its state. */
+function sinceWhen({ status }: SessionBrief) {
+  if (status === "planned") return "home.at.planned";
+  return status === "active" ? "home.at.started" : "home.at.ended";
 }
 
 interface PanelProps {

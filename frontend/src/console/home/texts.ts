@@ -18,6 +18,9 @@ export const homeEn = {
     "From a template or a file of your own. Every problem is shown with its line while you write.",
   "home.today": "Today's sessions",
   "home.today.none": "No session today.",
+  "home.at.planned": "created {{time}}",
+  "home.at.started": "started {{time}}",
+  "home.at.ended": "ended {{time}}",
   "home.attention": "Needs attention",
   "home.attention.none":
     "Nothing. No participant's session was left open, ended early or is invalid.",
@@ -70,6 +73,9 @@ export const homeDe: Readonly<Record<keyof typeof homeEn, string>> = {
     "Aus einer Vorlage oder einer eigenen Datei. Jedes Problem wird beim Schreiben mit seiner Zeile gezeigt.",
   "home.today": "Sitzungen von heute",
   "home.today.none": "Heute keine Sitzung.",
+  "home.at.planned": "angelegt {{time}}",
+  "home.at.started": "begonnen {{time}}",
+  "home.at.ended": "beendet {{time}}",
   "home.attention": "Braucht Aufmerksamkeit",
   "home.attention.none":
     "Nichts. Keine Sitzung mit Teilnehmenden blieb offen, endete vorzeitig oder ist ungültig.",

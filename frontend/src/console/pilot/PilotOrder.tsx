@@ -1,11 +1,16 @@
 /** Order a pilot: simulated people, or the power of the test, from what is assumed. */
-import { Button, Checkbox, NumberInput, Select, Textarea, TextInput, Title } from "@mantine/core";
+import { Button, Checkbox, NumberInput, Select, TextInput, Title } from "@mantine/core";
+import { ApiError, type Problem } from "@shared/api/request";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation } from "@tanstack/react-query";
-import { type JSX, type ReactNode, useState } from "react";
+import { type JSX, type ReactNode, useRef, useState } from "react";
+import { Link } from "wouter";
+import { replaceText, showLine, YamlField, type YamlText } from "../editor/YamlField";
 import { Failure } from "../errors";
+import { helpAddress } from "../help/address";
 import { useTexts } from "../i18n";
+import { Problems } from "../pages/Problems";
 import { numbersIn } from "./numbers";
 import classes from "./Pilot.module.css";
 import { type NewPilot, type Pilot, type PilotDefaults, pilots } from "./pilots";
@@ -38,10 +43,22 @@ export function PilotOrder({ studyKey, defaults, onStarted }: PilotOrderProps): 
         <CohortForm {...shared} />
         <PowerForm {...shared} />
       </div>
-      <Assumed defaults={defaults} text={assumed} onText={setAssumed} />
+      <Assumed
+        defaults={defaults}
+        text={assumed}
+        problems={problemsOf(start.error)}
+        onText={setAssumed}
+      />
       {start.isError && <Failure error={start.error} />}
     </div>
   );
+}
+
+const NO_PROBLEMS: readonly Problem[] = [];
+
+/** The problems of the assumptions for which a pilot was refused. */
+function problemsOf(refusal: unknown): readonly Problem[] {
+  return refusal instanceof ApiError ? refusal.details : NO_PROBLEMS;
 }
 
 interface FormProps {
@@ -230,37 +247,45 @@ function Seed({ value, onChange }: SeedProps): JSX.Element {
 interface AssumedProps {
   readonly defaults: PilotDefaults;
   readonly text: string;
+  readonly problems: readonly Problem[];
   readonly onText: (text: string) => void;
 }
 
-function Assumed({ defaults, text, onText }: AssumedProps): JSX.Element {
+function Assumed({ defaults, text, problems, onText }: AssumedProps): JSX.Element {
   const { t } = useTexts();
   const { assumptions, assumptions_trouble } = defaults;
+  const field = useRef<YamlText | null>(null);
   return (
-    <details className={classes.assumed} open={assumptions === null}>
+    <details className={classes.assumed} open={assumptions === null || problems.length > 0}>
       <summary>{t("pilot.assumptions")}</summary>
       {assumptions_trouble !== null && (
         <Notice tone="warn">{t("pilot.assumptions.unfit", { why: assumptions_trouble })}</Notice>
       )}
       <p className={classes.soft}>
-        {t(assumptions === null ? "pilot.assumptions.none" : "pilot.assumptions.hint")}
+        {t(assumptions === null ? "pilot.assumptions.none" : "pilot.assumptions.hint")}{" "}
+        <Link href={helpAddress("pilot", "what-it-assumes")}>{t("pilot.assumptions.help")}</Link>
       </p>
-      <Textarea
-        aria-label={t("pilot.assumptions.label")}
-        classNames={{ input: classes.yaml ?? "" }}
-        autosize
-        minRows={4}
-        maxRows={24}
-        spellCheck={false}
-        value={text}
-        onChange={({ currentTarget }) => onText(currentTarget.value)}
-      />
+      {problems.length > 0 && (
+        <Problems
+          problems={problems}
+          onPick={(line) => field.current !== null && showLine(field.current.view, line, true)}
+        />
+      )}
+      <div className={classes.yaml}>
+        <YamlField
+          initial={assumptions ?? ""}
+          label={t("pilot.assumptions.label")}
+          problems={problems}
+          field={field}
+          onChange={onText}
+        />
+      </div>
       {assumptions !== null && text !== assumptions && (
         <Button
           size="compact-sm"
           variant="default"
           className={classes.reset ?? ""}
-          onClick={() => onText(assumptions)}
+          onClick={() => field.current !== null && replaceText(field.current.view, assumptions)}
         >
           {t("pilot.assumptions.reset")}
         </Button>

@@ -26,9 +26,10 @@ export const pilotEn = {
   "pilot.start": "Start",
   "pilot.assumptions": "What is assumed of people's answers",
   "pilot.assumptions.hint":
-    "Declared numbers, none of them a finding. Change them and see what the answer depends on; the help explains each.",
+    "Declared numbers, none of them a finding. Change them and see what the answer depends on.",
   "pilot.assumptions.none":
-    "Nothing is assumed yet of how people would answer in this study, so its power cannot be simulated. Write the assumptions here; the help has their form.",
+    "Nothing is assumed yet of how people would answer in this study, so its power cannot be simulated. Write the assumptions here.",
+  "pilot.assumptions.help": "What each of them means",
   "pilot.assumptions.unfit": "The shipped assumptions do not fit this version: {{why}}",
   "pilot.assumptions.reset": "Reset to the shipped assumptions",
   "pilot.assumptions.label": "Assumptions (YAML)",
@@ -190,9 +191,10 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.start": "Starten",
   "pilot.assumptions": "Was von den Antworten angenommen wird",
   "pilot.assumptions.hint":
-    "Erklärte Zahlen, keine davon ein Befund. Wer sie ändert, sieht, wovon das Ergebnis abhängt; die Hilfe erklärt jede.",
+    "Erklärte Zahlen, keine davon ein Befund. Wer sie ändert, sieht, wovon das Ergebnis abhängt.",
   "pilot.assumptions.none":
-    "Wie Menschen in dieser Studie antworten würden, ist noch nicht angenommen, daher lässt sich ihre Teststärke nicht berechnen. Die Annahmen gehören hierher; die Hilfe zeigt ihre Form.",
+    "Wie Menschen in dieser Studie antworten würden, ist noch nicht angenommen, daher lässt sich ihre Teststärke nicht berechnen. Die Annahmen gehören hierher.",
+  "pilot.assumptions.help": "Was jede bedeutet",
   "pilot.assumptions.unfit": "Die mitgelieferten Annahmen passen nicht zu dieser Version: {{why}}",
   "pilot.assumptions.reset": "Auf die mitgelieferten Annahmen zurücksetzen",
   "pilot.assumptions.label": "Annahmen (YAML)",

@@ -9,8 +9,7 @@ from app.features.movement.avatar import add_shipped_avatar
 from app.features.movement.humanoids import add_shipped_bodies
 from app.features.results.analysis.dashboard import build_dashboard, drawings_of
 from app.features.results.analysis.material import OWN_BODY, read_material
-from app.features.results.analysis.questions import answers_of
-from app.features.results.analysis.questions.answers import BODIES, DECLARED
+from app.features.results.analysis.questions.answers import BODIES, DECLARED, answers_of
 from app.features.results.analysis.questions.relations import group_of
 from app.features.results.analysis.questions.words import bounded, p_words
 from app.features.results.analysis.schemas import MeasureView, ResultView, StatisticsResults

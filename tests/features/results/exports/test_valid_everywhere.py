@@ -9,7 +9,7 @@ from app.features.design.studies import add_version, study_by_key
 from app.features.record.ledger import Shortfall, settle_attempt
 from app.features.results.analysis.dashboard import NONE_COUNTS, build_dashboard
 from app.features.results.analysis.material import read_material
-from app.features.results.analysis.questions import answers_of
+from app.features.results.analysis.questions.answers import answers_of
 from app.features.results.preregistration.exclusions import exclude, read_tables
 from app.models import SlotAttempt, StudySession
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session

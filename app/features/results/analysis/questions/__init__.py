@@ -1,6 +1,9 @@
-"""Statistical tests of a study's measures in sentences and tables, and the values they test."""
+"""Statistical tests of a study's measures in sentences and tables, and the values they test.
 
-from app.features.results.analysis.questions.answers import answers_of
+The tests themselves (`answers_of` in `answers`) are not imported here: an export only needs the
+values, and would take a second longer to start.
+"""
+
 from app.features.results.analysis.questions.wide import WideColumn, wide_table
 
-__all__ = ["WideColumn", "answers_of", "wide_table"]
+__all__ = ["WideColumn", "wide_table"]

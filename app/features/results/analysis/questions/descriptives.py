@@ -30,16 +30,15 @@ def descriptive(measure: Measure) -> TestReport:
         sentence=f"Every cell of the design, in {unit}. {_maximum_words(measure)}",
         apa=f"{measure.title}: {'; '.join(cells)}",
         columns=(
-            *("task", measure.factor.heading, "n", f"mean ({unit})", "95 % BCa CI", "SD", "median"),
+            *("task", measure.factor.heading, "n", f"mean ({unit})", "95 % CI", "SD", "median"),
             *shares,
         ),
         rows=rows,
         method=(
-            "Each value is a participant’s mean over the phases of the cell. Intervals by the "
-            "bias-corrected accelerated bootstrap of participants, 1,999 draws from a stored seed. "
-            f"{error_rate_warning('bca_mean')}"
+            "Each value is a participant’s mean over the phases of the cell. Intervals are "
+            f"Student’s. {error_rate_warning('student_mean')}"
         ),
-        source="Efron 1987, J. Am. Stat. Assoc. 82:171.",
+        source="Student 1908, Biometrika 6:1.",
     )
 
 

@@ -18,9 +18,9 @@ from app.features.results.analysis.schemas import EffectView
 def effects_of(measure: Measure) -> Iterator[EffectView]:
     """Yield one effect for each limb with at least two participants who have both values.
 
-    Its interval is that of the mean difference, by the bias-corrected accelerated bootstrap of
-    participants, divided by the same standard deviation, which is taken as known. It is missing
-    where so few people allow none; the standardised effect is missing where nothing varies.
+    Its interval is Student's of the mean difference, divided by the same standard deviation, which
+    is taken as known. It is missing where all differences are equal; the standardised effect is
+    missing where nothing varies.
     """
     first, last = measure.levels[0], measure.levels[-1]
     words = measure.factor.words

@@ -336,7 +336,7 @@ def _planned(data: LimbData) -> TestReport:
             "Wilcoxon’s signed-rank tests, two-sided, exact given the ties, differences of zero "
             f"left out; Holm’s rule over {len(found.comparisons)} comparisons; pairs with a "
             "missing value are left out of their comparison. Positive: larger than at "
-            f"{levels[0]} ms. {error_rate_warning('bca_mean')}"
+            f"{levels[0]} ms. {error_rate_warning('student_mean')}"
         ),
         source=WILCOXON.source,
         warnings=(floor, error_rate_warning("wilcoxon_holm")),
@@ -372,7 +372,7 @@ def _pairs(data: LimbData) -> TestReport:
         method=(
             "Wilcoxon’s signed-rank tests, two-sided, exact given the ties, differences of zero "
             f"left out; Holm’s rule over {len(found)} comparisons; participants without one of "
-            f"the two are left out of a comparison. {error_rate_warning('bca_mean')}"
+            f"the two are left out of a comparison. {error_rate_warning('student_mean')}"
         ),
         source=WILCOXON.source,
         warnings=(floor, error_rate_warning("wilcoxon_holm")),
@@ -384,7 +384,7 @@ def _pairs(data: LimbData) -> TestReport:
 def _columns(data: LimbData, compared: str) -> tuple[str, ...]:
     """Return the columns of a table of comparisons, the first with what is compared."""
     medians = f"Δ median ({data.measure.unit})"
-    return compared, "n", medians, "Δ mean [95 % BCa CI]", "W", "p", "p (Holm)", "rank-biserial"
+    return compared, "n", medians, "Δ mean [95 % CI]", "W", "p", "p (Holm)", "rank-biserial"
 
 
 def _row(data: LimbData, one: Comparison) -> tuple[str, ...]:

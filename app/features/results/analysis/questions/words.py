@@ -2,7 +2,7 @@
 
 p has three decimals and no zero before the point; other numbers that cannot exceed 1 have no zero
 there either. Nothing is called significant: p is compared with alpha, and the comparison is
-reported. Intervals are drawn with a fixed seed, so that computing them again gives the same ones.
+reported.
 """
 
 import math
@@ -11,25 +11,21 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 
-import numpy as np
-
 from app.features.results.analysis.schemas import ResultView
 from app.science.statistics import (
     Direction,
     ErrorRates,
     FloatArray,
-    Interval,
-    StatisticsError,
-    bootstrap_interval,
+    MeanInterval,
+    TooFewData,
     error_rates_from_json,
-    mean_of,
 )
+from app.science.statistics import mean_interval as interval_of
 
 _SMALLEST_P = 0.001
 _BOUNDED_DIGITS = 3
 _RATES = "error_rates.json"
 NONE = "–"
-SEED, DRAWS = 20_260_101, 1999
 
 
 @dataclass(frozen=True)
@@ -135,7 +131,7 @@ def mean_words(values: FloatArray) -> str:
     found = mean_interval(values)
     if found is None:
         return number(float(values.mean())) if values.size else number(None)
-    return f"{number(found.estimate)} {_ends(found)}"
+    return f"{number(found.mean)} {_ends(found)}"
 
 
 def interval_words(values: FloatArray) -> str:
@@ -144,14 +140,14 @@ def interval_words(values: FloatArray) -> str:
     return number(None) if found is None else _ends(found)
 
 
-def mean_interval(values: FloatArray) -> Interval | None:
-    """Return the bootstrap interval of the mean; None if n is too small or nothing varies."""
-    rng = np.random.default_rng(SEED)
+def mean_interval(values: FloatArray) -> MeanInterval | None:
+    """Return Student's 95 % interval of the mean; None if n is too small or nothing varies."""
     try:
-        return bootstrap_interval(values, mean_of, rng=rng, resamples=DRAWS)
-    except StatisticsError:
+        found = interval_of(values)
+    except TooFewData:
         return None
+    return found if found.sd > 0.0 else None
 
 
-def _ends(found: Interval) -> str:
+def _ends(found: MeanInterval) -> str:
     return f"[{number(found.low)}, {number(found.high)}]"

@@ -10,6 +10,7 @@ import hashlib
 import os
 import shutil
 from collections.abc import Iterable, Iterator
+from contextlib import closing
 
 from sqlalchemy import func, select
 from sqlalchemy.exc import SQLAlchemyError
@@ -65,13 +66,15 @@ def _write_export(order: ExportOrder) -> ExportResult:
                 *(db, order.study_key, order.kind, order.now), only, movement=order.movement
             )
             members = watched(contents.members(), progress)
-            for piece in zip_pieces(members, order.now):
-                file.write(piece)
-                digest.update(piece)
-                before, progress.bytes = progress.bytes, progress.bytes + len(piece)
-                if progress.bytes // CHECK_EVERY_BYTES > before // CHECK_EVERY_BYTES:
-                    _require_room(order)
-                Meter(order.meter).write(progress)
+            # Closed before the database is, from which a thread may be reading the next piece.
+            with closing(zip_pieces(members, order.now)) as pieces:
+                for piece in pieces:
+                    file.write(piece)
+                    digest.update(piece)
+                    before, progress.bytes = progress.bytes, progress.bytes + len(piece)
+                    if progress.bytes // CHECK_EVERY_BYTES > before // CHECK_EVERY_BYTES:
+                        _require_room(order)
+                    Meter(order.meter).write(progress)
             file.flush()
             os.fsync(file.fileno())
     finally:

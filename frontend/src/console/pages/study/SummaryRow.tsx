@@ -122,7 +122,11 @@ function MainEffect({ primary, measures, isCurrent }: MainEffectProps): JSX.Elem
       </strong>{" "}
       {effect.low !== null &&
         effect.high !== null &&
-        t("summary.effect.interval", { low: signed(effect.low), high: signed(effect.high) })}
+        t("summary.effect.interval", {
+          low: signed(effect.low),
+          high: signed(effect.high),
+          n: effect.n,
+        })}
     </>
   );
 }

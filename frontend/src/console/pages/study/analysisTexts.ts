@@ -92,7 +92,7 @@ export const analysisEn = {
   "summary.effect": "Main effect (exploratory)",
   "summary.primary": "Preregistered test",
   "summary.effect.none": "At least two valid participants are needed.",
-  "summary.effect.interval": "[{{low}}, {{high}}], 95 % interval",
+  "summary.effect.interval": "[{{low}}, {{high}}], 95 % interval (Student’s t, n = {{n}})",
   "glance.title": "At a glance",
   "glance.about":
     "Each row is tested separately: Holm’s rule corrects for the comparisons within a row; nothing corrects for the number of rows.",
@@ -202,7 +202,7 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "summary.effect": "Haupteffekt (explorativ)",
   "summary.primary": "Präregistrierter Test",
   "summary.effect.none": "Mindestens zwei gültige Teilnehmende sind nötig.",
-  "summary.effect.interval": "[{{low}}, {{high}}], 95-%-Intervall",
+  "summary.effect.interval": "[{{low}}, {{high}}], 95-%-Intervall (Student-t, n = {{n}})",
   "glance.title": "Auf einen Blick",
   "glance.about":
     "Jede Zeile wird für sich getestet: Die Holm-Regel korrigiert über die Vergleiche einer Zeile; über die Zeilen hinweg wird nicht korrigiert.",

@@ -6,7 +6,7 @@ const exportsEn = {
   "export.download": "Download",
   "export.start": "Download (zip with CSV)",
   "export.tables.about":
-    "All tables, the codebook, the study as it was run, and the instruments with wording and formulas. Takes seconds.",
+    "All tables, the codebook, the study as it was run, and the instruments with wording and formulas. Usually ready within seconds.",
   "export.movement": "With every frame of movement",
   "export.movement.about":
     "The same, and samples of every session: tens of megabytes and a minute or more per session-hour. You see the size grow, and can cancel.",
@@ -90,7 +90,7 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.download": "Herunterladen",
   "export.start": "Herunterladen (Zip mit CSV)",
   "export.tables.about":
-    "Alle Tabellen, das Codebuch, die Studie, wie sie durchgeführt wurde, und die Fragebögen mit Wortlaut und Formeln. Dauert Sekunden.",
+    "Alle Tabellen, das Codebuch, die Studie, wie sie durchgeführt wurde, und die Fragebögen mit Wortlaut und Formeln. Meist in Sekunden fertig.",
   "export.movement": "Mit jedem Einzelbild der Bewegung",
   "export.movement.about":
     "Dasselbe und die Bewegung jeder Sitzung: viele Megabyte, und eine Minute oder mehr je Stunde Sitzung. Sie sehen, wie die Datei wächst, und können abbrechen.",
@@ -249,7 +249,7 @@ export const studyEn = {
   "ledger.empty.body": "It is created with the first session of this kind.",
   "dashboard.sessions_one": "from {{count}} valid session",
   "dashboard.sessions_other": "from {{count}} valid sessions",
-  "dashboard.running": ", {{count}} still open",
+  "dashboard.running": " and {{count}} running, with the data so far",
   "dashboard.drawing": "updating with newer data",
   "dashboard.drawing.group": "Drawing the figures “{{group}}”.",
   "dashboard.drawing.of":
@@ -340,7 +340,7 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "ledger.empty.body": "Er wird mit der ersten Sitzung dieser Art angelegt.",
   "dashboard.sessions_one": "aus {{count}} gültigen Sitzung",
   "dashboard.sessions_other": "aus {{count}} gültigen Sitzungen",
-  "dashboard.running": ", {{count}} noch offen",
+  "dashboard.running": " und {{count}} laufende, mit den Daten bis jetzt",
   "dashboard.drawing": "wird mit neueren Daten aktualisiert",
   "dashboard.drawing.group": "Die Abbildungen „{{group}}“ werden gezeichnet.",
   "dashboard.drawing.of":
