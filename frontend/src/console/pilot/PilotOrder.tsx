@@ -36,6 +36,7 @@ export function PilotOrder({ studyKey, defaults, onStarted }: PilotOrderProps): 
     onSuccess: onStarted,
   });
   const assumptions = assumed.trim() === "" ? null : assumed;
+  const problems = problemsOf(start.error);
   const shared = { defaults, assumptions, isPending: start.isPending, onStart: start.mutate };
   return (
     <div className={classes.order}>
@@ -43,13 +44,8 @@ export function PilotOrder({ studyKey, defaults, onStarted }: PilotOrderProps): 
         <CohortForm {...shared} />
         <PowerForm {...shared} />
       </div>
-      <Assumed
-        defaults={defaults}
-        text={assumed}
-        problems={problemsOf(start.error)}
-        onText={setAssumed}
-      />
-      {start.isError && <Failure error={start.error} />}
+      <Assumed defaults={defaults} text={assumed} problems={problems} onText={setAssumed} />
+      {start.isError && problems.length === 0 && <Failure error={start.error} />}
     </div>
   );
 }
@@ -263,7 +259,9 @@ function Assumed({ defaults, text, problems, onText }: AssumedProps): JSX.Elemen
       )}
       <p className={classes.soft}>
         {t(assumptions === null ? "pilot.assumptions.none" : "pilot.assumptions.hint")}{" "}
-        <Link href={helpAddress("pilot", "what-it-assumes")}>{t("pilot.assumptions.help")}</Link>
+        <Link href={helpAddress("pilot", "what-it-assumes")} className={classes.link ?? ""}>
+          {t("pilot.assumptions.help")}
+        </Link>
       </p>
       {problems.length > 0 && (
         <Problems
