@@ -5,6 +5,8 @@ Every recipe follows its section of CONTRIBUTING.md in a copy of the tree.
 
 from pathlib import Path
 
+import pytest
+
 from tests.architecture.recipes import Edit, Json, Recipe, Tree, after, before
 
 PAGE_TEXTS = "frontend/src/shared/session/registries.generated.ts"
@@ -361,7 +363,7 @@ table = pd.read_csv("table.csv")
 own = pd.DataFrame({"participant_code": table.who, "limb": "hand", "value": table.score,
                     "latency_ms": table.dose.map({"a": 0.0, "b": 125.0, "c": 350.0})})
 measure = Measure("m", "Score", "points", "", own, own, continuous=False)
-order = AnalyseOrder(pathlib.Path("table.csv"), "who", ["dose"], "score", None, 1, False)
+order = AnalyseOrder(pathlib.Path("table.csv"), "who", ["dose"], "score", None, False)
 answer = {
     "declared": primary_words(PrimaryTest(measure="completions", limb="hand", test="quade")),
     "page": [one.view().apa for one in limb_results(measure, "hand", 0.05) if "quade" in one.key],
@@ -426,6 +428,7 @@ answer = [read.format, read.motion.frame_count, refused]
     _texts(tree, '"format.dot-log": "Punkt-Log"', '"dot-log"', '".dot"')
 
 
+@pytest.mark.long
 def test_a_column_of_the_participants_page_takes_at_most_three_edited_files(
     tmp_path: Path,
 ) -> None:
@@ -446,6 +449,7 @@ answer = _participant(row, [], [], None).visits
     assert "{participant.visits}" in tree.read(COLUMNS)
 
 
+@pytest.mark.long
 def test_a_figure_takes_one_edited_file(tmp_path: Path) -> None:
     """A new figure edits one file, and the dashboard draws it with its group."""
     tree = _applied(FIGURE, tmp_path, edited=1)
@@ -460,6 +464,7 @@ answer = [drawing.key, drawing.group, drawing.n]
     assert answer == ["joined", "progress", 2]
 
 
+@pytest.mark.long
 def test_an_alarm_takes_two_edited_files(tmp_path: Path) -> None:
     """A new alarm edits two files, is raised with its severity, and has texts in the cockpit."""
     tree = _applied(ALARM, tmp_path, edited=2)

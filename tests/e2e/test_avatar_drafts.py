@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter
@@ -60,6 +61,7 @@ def test_unsaved_work_is_lost_neither_to_another_tab_nor_to_a_refusal(
     expect(take).to_have_count(0)
 
 
+@pytest.mark.long
 def test_unsaved_work_goes_on_from_its_own_version_and_stays_its_owners(
     page_factory: Callable[..., Page],
     running_server: LiveServer,

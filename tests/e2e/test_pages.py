@@ -17,6 +17,9 @@ from tests.support.traffic import Traffic
 
 TABS = ("", "ledger", "sessions", "participants", "dashboard", "export", "protocol")
 REPLAYED_S = 3.0
+BELOW_THE_WINDOW_PX = (
+    "document.documentElement.scrollHeight - document.documentElement.clientHeight"
+)
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +50,10 @@ def test_every_console_page_is_accessible(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """No page of the console has a serious accessibility violation or an error in its log."""
+    """No page of the console has a serious accessibility violation or an error in its log.
+
+    A session and its replay fill the window and scroll inside it: nothing empty is below them.
+    """
     page = page_factory((1280, 800))
     traffic = Traffic(page)
 
@@ -76,10 +82,12 @@ def test_every_console_page_is_accessible(
     page.get_by_text("SIM-0001").first.click()
     expect(page.get_by_text("Session completed")).to_be_visible(timeout=PATIENCE_MS)
     is_sound("session")
+    assert page.evaluate(BELOW_THE_WINDOW_PX) == 0
     page.get_by_role("link", name="Replay Hand task").first.click()
     expect(page.locator("[data-way=space]")).to_be_visible(timeout=PATIENCE_MS)
     page.keyboard.press("L")
     is_sound("replay")
+    assert page.evaluate(BELOW_THE_WINDOW_PX) == 0
 
 
 @pytest.mark.parametrize("size", [(1180, 820), (820, 1180)])

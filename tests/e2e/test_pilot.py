@@ -1,5 +1,6 @@
 """Browser test of a study's pilots: start, watch, stop, resume, read, delete."""
 
+import re
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -49,7 +50,7 @@ def test_a_pilot_is_started_read_and_deleted(
     cohort.get_by_role("button", name="Start").click()
     shown = page.get_by_role("region", name="The pilot that is shown")
     shown.get_by_role("button", name="Stop").click()
-    expect(shown.get_by_text("Stopped:")).to_be_visible(timeout=PATIENCE_MS)
+    expect(shown.get_by_text(re.compile("^Stopped"))).to_be_visible(timeout=PATIENCE_MS)
     shown.get_by_role("button", name="Resume").click()
     expect(shown.get_by_text("Length of a visit")).to_be_visible(timeout=4 * PATIENCE_MS)
     expect(shown.get_by_text("SIMULATED").first).to_be_visible()

@@ -5,6 +5,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -73,6 +74,7 @@ def _pictured(page: Page, panel: Locator, screenshot: Shot, name: str) -> None:
             screenshot(page, f"road-{name}-{size['width']}-{scheme}")
 
 
+@pytest.mark.long
 def test_a_partner_that_is_killed_is_seen_and_the_phase_can_be_done_again(
     headset_site: Site,
     new_context: ContextFactory,
@@ -139,6 +141,7 @@ def test_a_partner_that_is_killed_is_seen_and_the_phase_can_be_done_again(
             done = visit.perform(
                 until=lambda view: any(_has_crossed(one) for one in view["phases"])
             )
+            _wait_until_complete(visit)
         view = visit.view()
         visit.command(view, "abort", reason="seen enough")
     crossed = [one for one in done["phases"] if one["kind"] == "road_crossing"]
@@ -150,6 +153,14 @@ def test_a_partner_that_is_killed_is_seen_and_the_phase_can_be_done_again(
     crossing = panel.get_by_role("listitem", name="Crossing 1")
     expect(crossing).to_contain_text("Gap accepted", timeout=PATIENCE_MS)
     _pictured(page, panel, screenshot, "crossed")
+
+
+def _wait_until_complete(visit: Visit) -> None:
+    """Wait until the server has ended the traffic, before the other program ends."""
+    for _ in range(200):
+        if _road(visit)["runs"][-1]["ended"] is not None:
+            return
+        time.sleep(0.1)
 
 
 def _has_crossed(phase: Json) -> bool:

@@ -57,5 +57,6 @@ async def put_session_trackers(
         with context.database.reading() as db:
             return session_trackers(db, context, session_by_id(db, session_id))
 
+    await run_in_threadpool(context.part(LabTrackers).store_now, session_id)
     await write(context, choose)
     return await run_in_threadpool(shown)

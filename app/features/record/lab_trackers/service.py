@@ -49,6 +49,7 @@ class Followed:
     link: TrackerLink
     waiting: Waiting[Sample] = field(default_factory=lambda: Waiting(MAX_WAITING))
     changes: deque[Watched] = field(default_factory=deque)
+    storing: threading.Lock = field(default_factory=threading.Lock)
     was_recording: bool = False
     is_watching: bool = False
     refits: int = 0
@@ -115,6 +116,15 @@ class LabTrackers(Part):
             else:
                 before.link.wear(limbs, bones)
         self._wake(session_id)
+
+    def store_now(self, session_id: str) -> None:
+        """Store what a session's trackers brought; call it before they are changed.
+
+        An alignment that still waits would otherwise be one of trackers that are not chosen.
+        """
+        followed = self.followed(session_id)
+        if followed is not None:
+            self._store(followed)
 
     def followed(self, session_id: str) -> Followed | None:
         """Return what is known of a session's trackers; None if it uses none."""
@@ -226,6 +236,10 @@ class LabTrackers(Part):
 
     def _store(self, one: Followed) -> None:
         """Store what waits in a transaction; if that fails, raise the error, and it waits on."""
+        with one.storing:
+            self._store_alone(one)
+
+    def _store_alone(self, one: Followed) -> None:
         with self._context.database.reading() as db:
             recording = recording_of(db, session_by_id(db, one.session_id))
         samples, changes = one.waiting.take(), list(one.changes)
