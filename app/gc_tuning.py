@@ -1,4 +1,6 @@
-"""Tune Python's garbage collector: collect rarely during start-up, and not at exit.
+"""Tune how memory is given back: Python's garbage collector, and the C library's arenas.
+
+The collector runs rarely during start-up, and not at exit.
 
 Start-up creates half a million objects, none of which is garbage. Python scans them repeatedly as
 their number grows, and a last time at exit, which together took longer than the imports themselves:
@@ -6,6 +8,7 @@ their number grows, and a last time at exit, which together took longer than the
 """
 
 import atexit
+import ctypes
 import gc
 import sys
 from collections.abc import Iterator
@@ -13,6 +16,7 @@ from contextlib import contextmanager
 
 _AS_PYTHON_HAS_IT = gc.get_threshold()
 _WHILE_STARTING = (100_000, 50, 1000)
+_M_ARENA_MAX, _ARENAS = -8, 2
 
 
 def relax_gc() -> None:
@@ -37,6 +41,19 @@ def loading_modules() -> Iterator[None]:
         if len(sys.modules) > loaded:
             gc.freeze()
         gc.enable()
+
+
+def limit_arenas() -> None:
+    """Let all threads share two arenas of glibc's `malloc`; other C libraries are left as they are.
+
+    Usually each thread gets an arena of its own, eight for every core, and what is free in one is
+    of no use to the others: in an hour of six sessions and four consoles the server grew by 13 MiB,
+    with two arenas by 8. Call it before there are threads.
+    """
+    try:
+        ctypes.CDLL(None).mallopt(_M_ARENA_MAX, _ARENAS)
+    except (AttributeError, OSError, TypeError):
+        return  # not glibc
 
 
 def freeze_startup_objects() -> None:

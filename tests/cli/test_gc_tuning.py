@@ -1,7 +1,10 @@
-"""A test of the tuning of Python's garbage collector."""
+"""Tests of the tuning of Python's garbage collector and of the arenas of the C library."""
 
+import platform
 import subprocess
 import sys
+
+import pytest
 
 TOLD = """
 import gc
@@ -44,3 +47,40 @@ def test_modules_loaded_later_are_excluded_once() -> None:
         [sys.executable, "-c", LOADED_LATER], capture_output=True, check=True, text=True
     )
     assert result.stdout.split() == ["True", "True"]
+
+
+ARENAS = """
+import re, sys, threading
+from app.gc_tuning import limit_arenas
+if sys.argv[1] == "limited":
+    limit_arenas()
+released = threading.Event()
+kept = []
+def allocate():
+    kept.append([bytes(100_000) for _ in range(10)])
+    released.wait()
+threads = [threading.Thread(target=allocate) for _ in range(12)]
+for one in threads:
+    one.start()
+heaps = 0
+for line in open("/proc/self/maps"):
+    found = re.match(r"([0-9a-f]+)-\\S+ rw-p 00000000 00:00 0 *$", line)
+    # An arena of a thread begins at a multiple of 64 MiB.
+    heaps += found is not None and int(found[1], 16) % (64 << 20) == 0
+released.set()
+print(heaps)
+"""
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="only glibc has arenas")
+def test_threads_share_two_arenas() -> None:
+    """A dozen threads that allocate share glibc's two arenas; otherwise they make more."""
+    limited, usual = (
+        int(
+            subprocess.run(
+                [sys.executable, "-c", ARENAS, how], capture_output=True, check=True, text=True
+            ).stdout
+        )
+        for how in ("limited", "usual")
+    )
+    assert limited < 2 < usual

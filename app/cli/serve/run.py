@@ -25,7 +25,7 @@ from app.database_address import first_line, shown_address
 from app.errors import InvalidInput, ReembodyError
 from app.features.care.opening import prepare_database, quarantine_if_damaged
 from app.features.care.ownership import Ownership, own_data
-from app.gc_tuning import freeze_startup_objects
+from app.gc_tuning import freeze_startup_objects, limit_arenas
 from app.lan import Network
 from app.lan.serving import (
     CertificateWatch,
@@ -109,6 +109,7 @@ def _serve_on(bound: "_Bound", settings: Settings, own: Ownership, *, new_databa
         lambda error: background.failed(CERTIFICATE, error),
         lambda: background.recovered(CERTIFICATE),
     )
+    limit_arenas()
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     freeze_startup_objects()
     print(addresses(watch.network.reach, _where(settings)), flush=True)
