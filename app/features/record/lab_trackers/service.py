@@ -120,11 +120,17 @@ class LabTrackers(Part):
     def store_now(self, session_id: str) -> None:
         """Store what a session's trackers brought; call it before they are changed.
 
-        An alignment that still waits would otherwise be one of trackers that are not chosen.
+        An alignment that still waits would otherwise be one of trackers that are not chosen. What
+        cannot be stored now waits on: nobody is kept from giving trackers up.
         """
         followed = self.followed(session_id)
-        if followed is not None:
+        if followed is None:
+            return
+        try:
             self._store(followed)
+        except Exception as error:
+            log.exception("the trackers of session %s could not be stored", session_id)
+            self._context.background.failed(THREAD, error)
 
     def followed(self, session_id: str) -> Followed | None:
         """Return what is known of a session's trackers; None if it uses none."""

@@ -80,13 +80,13 @@ def test_what_could_not_be_stored_waits_on(
     """After a failure the last samples are stored, also if the trackers were given up since."""
     session_id = waits(fresh_lab, trackers, STUDY)
     path = f"/api/sessions/{session_id}/trackers"
-    ok(fresh_lab.operator.put(path, json={"door": None, "source": None}))
 
     def full(*_: object, **__: object) -> int:
         raise OSError("no space left on device")
 
     with monkeypatch.context() as patch:
         patch.setattr(service, "store_samples", full)
+        ok(fresh_lab.operator.put(path, json={"door": None, "source": None}))
         trackers._look_after_all()
     assert stored(fresh_lab) == []
     assert [one.name for one in fresh_lab.context.background.failing()] == [service.THREAD]
