@@ -24,6 +24,7 @@ def edited(page: Page, address: str, column: int, value: str) -> None:
     expect(page.get_by_text("1 unsaved change", exact=True)).to_be_visible(timeout=PATIENCE_MS)
 
 
+@pytest.mark.long
 def test_unsaved_work_is_lost_neither_to_another_tab_nor_to_a_refusal(
     page_factory: Callable[..., Page],
     running_server: LiveServer,
