@@ -19,6 +19,8 @@ interface CountedProps {
 
 export function Counted({ found, running = 0, doing }: CountedProps): JSX.Element {
   const { t } = useTexts();
+  const more = found !== undefined && running > 0 ? t("dashboard.running", { count: running }) : "";
+  const words = found === undefined ? "…" : `${sessionCounts(found, t)}${more}`;
   return (
     <span className={classes.counted}>
       <span className={classes.sign} title={doing ?? undefined}>
@@ -26,9 +28,8 @@ export function Counted({ found, running = 0, doing }: CountedProps): JSX.Elemen
           <Loader size={14} role="status" aria-label={doing} />
         )}
       </span>
-      <span>
-        {found === undefined ? "…" : sessionCounts(found, t)}
-        {found !== undefined && running > 0 && t("dashboard.running", { count: running })}
+      <span className={classes.words} title={words}>
+        {words}
       </span>
     </span>
   );

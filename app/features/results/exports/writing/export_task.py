@@ -9,6 +9,7 @@ amount of data. The file gets its final name once it is complete and on the disk
 import hashlib
 import os
 import shutil
+import sys
 from collections.abc import Iterable, Iterator
 from contextlib import closing
 
@@ -32,6 +33,9 @@ from app.features.results.exports.writing.contents import Contents, Member
 from app.models import StudySession, TelemetryStream
 from app.wire import StreamName
 
+SWITCH_INTERVAL_S = 0.0005
+"""Python's default of 5 ms is longer than a piece takes: whoever compresses it would wait as long
+for the thread that computes the next one."""
 CHECK_EVERY_BYTES = 32 * 1024**2
 """The disk's free space is checked each time this many bytes were written."""
 
@@ -56,6 +60,7 @@ def make_export(order: ExportOrder) -> ExportResult | ExportFailure:
 
 
 def _write_export(order: ExportOrder) -> ExportResult:
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
     database = Database(make_engine(order.url, pooled=False))
     progress, digest = Progress(), hashlib.sha256()
     try:

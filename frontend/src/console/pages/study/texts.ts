@@ -249,7 +249,7 @@ export const studyEn = {
   "ledger.empty.body": "It is created with the first session of this kind.",
   "dashboard.sessions_one": "from {{count}} valid session",
   "dashboard.sessions_other": "from {{count}} valid sessions",
-  "dashboard.running": " and {{count}} running, with the data so far",
+  "dashboard.running": ", plus {{count}} still running",
   "dashboard.drawing": "updating with newer data",
   "dashboard.drawing.group": "Drawing the figures “{{group}}”.",
   "dashboard.drawing.of":
@@ -340,7 +340,7 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "ledger.empty.body": "Er wird mit der ersten Sitzung dieser Art angelegt.",
   "dashboard.sessions_one": "aus {{count}} gültigen Sitzung",
   "dashboard.sessions_other": "aus {{count}} gültigen Sitzungen",
-  "dashboard.running": " und {{count}} laufende, mit den Daten bis jetzt",
+  "dashboard.running": ", dazu {{count}} laufende",
   "dashboard.drawing": "wird mit neueren Daten aktualisiert",
   "dashboard.drawing.group": "Die Abbildungen „{{group}}“ werden gezeichnet.",
   "dashboard.drawing.of":
