@@ -1,13 +1,8 @@
-"""Write an export as a ZIP file while it is sent, never holding all of it in memory or on disk.
-
-Compression takes a third of the time, and zlib needs no interpreter for it: so while a piece is
-compressed, a thread already computes the next one.
-"""
+"""Write an export as a ZIP file while it is sent, never holding all of it in memory or on disk."""
 
 import io
 import zipfile
-from collections.abc import Generator, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterable, Iterator
 from datetime import datetime
 
 from app.features.results.exports.writing.contents import Member
@@ -17,25 +12,17 @@ LEVEL = 1
 SEND_FROM_BYTES = 256 * 1024
 
 
-def zip_pieces(members: Iterable[Member], now: datetime) -> Generator[bytes]:
+def zip_pieces(members: Iterable[Member], now: datetime) -> Iterator[bytes]:
     """Yield the archive in pieces; one that breaks off has no directory, so no program opens it."""
     sink = _Sink()
-    with zipfile.ZipFile(sink, "w") as archive, ThreadPoolExecutor(1, "export-reader") as thread:
+    with zipfile.ZipFile(sink, "w") as archive:
         for member in members:
             with archive.open(_Entry(member.path, now), "w", force_zip64=True) as file:
-                for piece in _ahead(member.pieces, thread):
+                for piece in member.pieces:
                     file.write(piece)
                     if sink.waiting >= SEND_FROM_BYTES:
                         yield sink.take()
     yield sink.take()
-
-
-def _ahead(pieces: Iterator[bytes], thread: ThreadPoolExecutor) -> Iterator[bytes]:
-    """Yield the pieces, each computed in the thread while the caller uses the one before."""
-    coming = thread.submit(next, pieces, None)
-    while (piece := coming.result()) is not None:
-        coming = thread.submit(next, pieces, None)
-        yield piece
 
 
 class _Entry(zipfile.ZipInfo):

@@ -9,9 +9,7 @@ amount of data. The file gets its final name once it is complete and on the disk
 import hashlib
 import os
 import shutil
-import sys
 from collections.abc import Iterable, Iterator
-from contextlib import closing
 
 from sqlalchemy import func, select
 from sqlalchemy.exc import SQLAlchemyError
@@ -33,9 +31,6 @@ from app.features.results.exports.writing.contents import Contents, Member
 from app.models import StudySession, TelemetryStream
 from app.wire import StreamName
 
-SWITCH_INTERVAL_S = 0.0005
-"""Python's default of 5 ms is longer than a piece takes: whoever compresses it would wait as long
-for the thread that computes the next one."""
 CHECK_EVERY_BYTES = 32 * 1024**2
 """The disk's free space is checked each time this many bytes were written."""
 
@@ -60,7 +55,6 @@ def make_export(order: ExportOrder) -> ExportResult | ExportFailure:
 
 
 def _write_export(order: ExportOrder) -> ExportResult:
-    sys.setswitchinterval(SWITCH_INTERVAL_S)
     database = Database(make_engine(order.url, pooled=False))
     progress, digest = Progress(), hashlib.sha256()
     try:
@@ -71,15 +65,13 @@ def _write_export(order: ExportOrder) -> ExportResult:
                 *(db, order.study_key, order.kind, order.now), only, movement=order.movement
             )
             members = watched(contents.members(), progress)
-            # Closed before the database is, from which a thread may be reading the next piece.
-            with closing(zip_pieces(members, order.now)) as pieces:
-                for piece in pieces:
-                    file.write(piece)
-                    digest.update(piece)
-                    before, progress.bytes = progress.bytes, progress.bytes + len(piece)
-                    if progress.bytes // CHECK_EVERY_BYTES > before // CHECK_EVERY_BYTES:
-                        _require_room(order)
-                    Meter(order.meter).write(progress)
+            for piece in zip_pieces(members, order.now):
+                file.write(piece)
+                digest.update(piece)
+                before, progress.bytes = progress.bytes, progress.bytes + len(piece)
+                if progress.bytes // CHECK_EVERY_BYTES > before // CHECK_EVERY_BYTES:
+                    _require_room(order)
+                Meter(order.meter).write(progress)
             file.flush()
             os.fsync(file.fileno())
     finally:
