@@ -109,7 +109,9 @@ def _serve_on(bound: "_Bound", settings: Settings, own: Ownership, *, new_databa
         lambda error: background.failed(CERTIFICATE, error),
         lambda: background.recovered(CERTIFICATE),
     )
-    limit_arenas()
+    if database_file(settings) is not None:
+        # With PostgreSQL the server's memory does not grow, and its threads would wait for another.
+        limit_arenas()
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     freeze_startup_objects()
     print(addresses(watch.network.reach, _where(settings)), flush=True)
