@@ -70,13 +70,16 @@ export function PilotTab({ study }: { readonly study: StudyDetail }): JSX.Elemen
     section.current.scrollIntoView({ block: "start" });
   });
   const isGone = isApiError(query.error, "not_found");
+  const canOrder = can("design") && study.archived_at === null;
+  // What comes below the form waits for it: nothing moves when it arrives.
+  const isLaidOut = !canOrder || !defaults.isPending;
   return (
     <div className={classes.page}>
       <p className={classes.lead}>{t("pilot.lead")}</p>
       <Notice tone="sim" title={t("simulated.watermark")}>
         {t("pilot.simulated")}
       </Notice>
-      {can("design") && study.archived_at === null && (
+      {canOrder && (
         <Loaded query={defaults} isShort>
           {(given) => (
             <PilotOrder
@@ -90,18 +93,20 @@ export function PilotTab({ study }: { readonly study: StudyDetail }): JSX.Elemen
           )}
         </Loaded>
       )}
-      <Loaded query={listed} isShort>
-        {(known) =>
-          known.length === 0 ? (
-            <EmptyState icon="body" title={t("pilot.none")}>
-              {t("pilot.none.body")}
-            </EmptyState>
-          ) : (
-            <Known known={known} shown={id} onShow={show} />
-          )
-        }
-      </Loaded>
-      {id !== "" && !isGone && (
+      {isLaidOut && (
+        <Loaded query={listed} isShort>
+          {(known) =>
+            known.length === 0 ? (
+              <EmptyState icon="body" title={t("pilot.none")}>
+                {t("pilot.none.body")}
+              </EmptyState>
+            ) : (
+              <Known known={known} shown={id} onShow={show} />
+            )
+          }
+        </Loaded>
+      )}
+      {isLaidOut && id !== "" && !isGone && (
         <Loaded query={query}>
           {(pilot) => (
             <section ref={section} className={classes.shown} aria-label={t("pilot.course")}>
