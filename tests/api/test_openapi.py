@@ -37,7 +37,7 @@ CHECKS = (
     response_headers_conformance,
     response_schema_conformance,
 )
-EXAMPLES, MANY_EXAMPLES = usually(2, at_length=5), 400
+EXAMPLES, MANY_EXAMPLES = usually(3, at_length=5), 400
 NOT_CALLED = ("/live", "/api/logout", "/api/me/password", "/logins")
 """Endless streams, and operations that would end the login in use."""
 

@@ -5,8 +5,6 @@ Every recipe follows its section of CONTRIBUTING.md in a copy of the tree.
 
 from pathlib import Path
 
-import pytest
-
 from tests.architecture.recipes import Edit, Json, Recipe, Tree, after, before
 
 PAGE_TEXTS = "frontend/src/shared/session/registries.generated.ts"
@@ -428,7 +426,6 @@ answer = [read.format, read.motion.frame_count, refused]
     _texts(tree, '"format.dot-log": "Punkt-Log"', '"dot-log"', '".dot"')
 
 
-@pytest.mark.long
 def test_a_column_of_the_participants_page_takes_at_most_three_edited_files(
     tmp_path: Path,
 ) -> None:
@@ -449,7 +446,6 @@ answer = _participant(row, [], [], None).visits
     assert "{participant.visits}" in tree.read(COLUMNS)
 
 
-@pytest.mark.long
 def test_a_figure_takes_one_edited_file(tmp_path: Path) -> None:
     """A new figure edits one file, and the dashboard draws it with its group."""
     tree = _applied(FIGURE, tmp_path, edited=1)
@@ -464,7 +460,6 @@ answer = [drawing.key, drawing.group, drawing.n]
     assert answer == ["joined", "progress", 2]
 
 
-@pytest.mark.long
 def test_an_alarm_takes_two_edited_files(tmp_path: Path) -> None:
     """A new alarm edits two files, is raised with its severity, and has texts in the cockpit."""
     tree = _applied(ALARM, tmp_path, edited=2)

@@ -4,8 +4,6 @@ import sys
 import types
 from pathlib import Path
 
-import pytest
-
 import app
 from tests.architecture.drive import Recorder
 from tests.architecture.trees import REPOSITORY
@@ -45,7 +43,6 @@ def _module(name: str, file: Path) -> dict[str, types.FunctionType]:
     return space
 
 
-@pytest.mark.long
 def test_the_four_walks_complete() -> None:
     """All four walks complete: frame to CSV, answer to score, command to event, capture to BVH."""
     walked = walks(REPOSITORY, rounds=1)

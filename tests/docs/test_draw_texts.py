@@ -2,13 +2,10 @@
 
 from collections import Counter
 
-import pytest
-
 from tests.architecture.trees import REPOSITORY
 from tests.docs.draw_texts import SAMPLE, docstrings, drawn, page_texts
 
 
-@pytest.mark.long
 def test_a_seed_draws_the_same_texts_every_time() -> None:
     """The sample depends on the seed, contains no text twice, and changes with the seed."""
     texts = docstrings(REPOSITORY)

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Callable
 
-import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter
@@ -19,7 +18,6 @@ def changes(page: Page, count: int) -> None:
     expect(page.get_by_text(text, exact=True)).to_be_visible(timeout=PATIENCE_MS)
 
 
-@pytest.mark.long
 def test_a_leg_is_made_soft_on_the_page(
     running_server: LiveServer,
     page_factory: Callable[..., Page],

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 
-import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter
@@ -24,7 +23,6 @@ def edited(page: Page, address: str, column: int, value: str) -> None:
     expect(page.get_by_text("1 unsaved change", exact=True)).to_be_visible(timeout=PATIENCE_MS)
 
 
-@pytest.mark.long
 def test_unsaved_work_is_lost_neither_to_another_tab_nor_to_a_refusal(
     page_factory: Callable[..., Page],
     running_server: LiveServer,
@@ -62,7 +60,6 @@ def test_unsaved_work_is_lost_neither_to_another_tab_nor_to_a_refusal(
     expect(take).to_have_count(0)
 
 
-@pytest.mark.long
 def test_unsaved_work_goes_on_from_its_own_version_and_stays_its_owners(
     page_factory: Callable[..., Page],
     running_server: LiveServer,

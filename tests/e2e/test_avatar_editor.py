@@ -90,7 +90,6 @@ def test_an_avatar_is_made_and_used_by_mouse(
     assert clicks_to_a_softer_knee(page, url) <= CLICKS
 
 
-@pytest.mark.long
 def test_an_avatar_is_made_and_used_by_keyboard_alone(
     running_server: LiveServer,
     page_factory: Callable[..., Page],

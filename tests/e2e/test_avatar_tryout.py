@@ -5,7 +5,6 @@ from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 
-import pytest
 from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
@@ -16,7 +15,6 @@ from tests.support.server import LiveServer
 from tests.support.tryout_page import figure, opened_tryout
 
 
-@pytest.mark.long
 def test_a_configuration_is_tried_before_it_is_saved(
     running_server: LiveServer,
     new_context: ContextFactory,
@@ -130,7 +128,6 @@ COLOURFUL = 80
 """Saturation from which a pixel is no floor, line or word, of 255."""
 
 
-@pytest.mark.long
 def test_the_camera_goes_along_with_a_body_that_walks(
     running_server: LiveServer,
     new_context: ContextFactory,

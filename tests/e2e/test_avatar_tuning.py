@@ -3,7 +3,6 @@
 import re
 from collections.abc import Callable
 
-import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, PICTURE_HIDDEN, Experimenter
@@ -39,7 +38,6 @@ def choose(page: Page, field: str, option: str) -> None:
     page.get_by_role("option", name=option, exact=True).click()
 
 
-@pytest.mark.long
 def test_a_tuning_survives_crashes_and_colleagues(
     page_watch: PageWatch,
     screenshot: Callable[[Page, str], object],

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Callable
 
-import pytest
 from playwright.sync_api import Locator, Page, ViewportSize, expect
 
 from app.features.movement.avatar import SHIPPED, version_of
@@ -130,7 +129,6 @@ def _reads_the_receipt(
     page.keyboard.press("Escape")
 
 
-@pytest.mark.long
 def test_an_operator_changes_the_avatar_by_keyboard(
     headset_site: Site,
     page_factory: Callable[..., Page],

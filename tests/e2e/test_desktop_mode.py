@@ -45,7 +45,6 @@ def test_the_study_is_acted_on_this_screen_after_one_click(
     expect(connected).to_be_visible(timeout=PATIENCE_MS)
 
 
-@pytest.mark.long
 def test_two_clicks_lead_from_the_first_page_into_a_body(
     headset_site: Site,
     page_factory: Callable[..., Page],
@@ -85,7 +84,6 @@ def test_two_clicks_lead_from_the_first_page_into_a_body(
     assert begun["status"] in ("preparing", "running", "paused")
 
 
-@pytest.mark.long
 def test_one_person_alone_crosses_the_road_there_and_back(
     headset_site: Site,
     page_factory: Callable[..., Page],

@@ -108,7 +108,6 @@ def test_a_study_from_template_to_second_version(
     screenshot(page, "study-versions")
 
 
-@pytest.mark.long
 def test_the_curves_of_simulated_answers_are_edited_and_stored(
     writer: Writer,
     live_server: LiveServer,

@@ -74,7 +74,6 @@ def _pictured(page: Page, panel: Locator, screenshot: Shot, name: str) -> None:
             screenshot(page, f"road-{name}-{size['width']}-{scheme}")
 
 
-@pytest.mark.long
 def test_a_partner_that_is_killed_is_seen_and_the_phase_can_be_done_again(
     headset_site: Site,
     new_context: ContextFactory,

@@ -4,7 +4,6 @@ import json
 import socket
 from collections.abc import Callable
 
-import pytest
 from playwright.sync_api import Page, expect
 
 from tests.adapters.live.packets import bundle, vmc
@@ -54,7 +53,6 @@ def _watch_and_record(
     page.get_by_role("button", name=f"Hide the body: {HERE}").click()
 
 
-@pytest.mark.long
 def test_trackers_arrive_are_judged_and_are_put_on_limbs(
     live_server: LiveServer,
     page_factory: Callable[..., Page],

@@ -153,7 +153,6 @@ def put_on(visit: Visit) -> None:
     visit.headset.do("reembody.isRendering = false")
 
 
-@pytest.mark.long
 def test_a_phase_outlives_what_happens_to_its_headset_page_network_and_server(
     headset_site: Site,
     new_context: ContextFactory,
@@ -315,7 +314,6 @@ STAGES_OF_A_FOOT_TASK = {
 """How the page itself says that it is in a stage; the server hears of it a little later."""
 
 
-@pytest.mark.long
 def test_a_page_is_loaded_again_in_preparation_walk_back_and_freeze(
     headset_site: Site, new_context: ContextFactory, page_watch: PageWatch, tmp_path: Path
 ) -> None:

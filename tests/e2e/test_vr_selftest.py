@@ -175,7 +175,6 @@ def test_a_worn_headset_measures_itself_and_its_report_is_judged(
     expect(tested.page.get_by_role("button", name="Enter VR")).to_be_enabled()
 
 
-@pytest.mark.long
 def test_a_report_waits_on_the_headset_while_the_server_is_away(
     headset_site: Site,
     new_context: ContextFactory,

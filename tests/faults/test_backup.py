@@ -93,7 +93,7 @@ async def stream_and_back_up(server: LiveServer, ledger: LedgerJournal, to: Path
     [
         pytest.param("sqlite", "sqlite", marks=pytest.mark.long),
         ("postgresql", "sqlite"),
-        pytest.param("sqlite", "postgresql", marks=pytest.mark.long),
+        ("sqlite", "postgresql"),
     ],
 )
 def test_a_backup_under_load_is_restored_whole(tmp_path: Path, origin: str, target: str) -> None:

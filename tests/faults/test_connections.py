@@ -112,7 +112,6 @@ def test_a_cut_connection_pauses_the_phase_and_keeps_the_epoch(
     assert sound(live_server, outcome, ledger)
 
 
-@pytest.mark.long
 def test_an_outage_of_the_network_costs_no_active_time(live_server: LiveServer) -> None:
     """Neither the server nor the headset counts active time during a network outage."""
     ledger = LedgerJournal()

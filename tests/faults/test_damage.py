@@ -35,7 +35,6 @@ def try_many(folder: Folder, elsewhere: Path, count: int, processes: int = 1) ->
     assert [case for case in cases if case.errors] == []
 
 
-@pytest.mark.long
 def test_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path) -> None:
     """A start with damaged files never ends in a traceback, and a restored backup can be served."""
     try_many(folder, tmp_path, SHORT)

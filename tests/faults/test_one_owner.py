@@ -122,7 +122,6 @@ def paused(payloads: Sequence[str]) -> int:
     return sum("server_restarted" in payload for payload in payloads)
 
 
-@pytest.mark.long
 def test_commands_that_write_are_refused_and_those_that_read_are_not(
     live_server: LiveServer, tmp_path: Path
 ) -> None:

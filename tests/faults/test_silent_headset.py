@@ -5,7 +5,6 @@ from collections.abc import Coroutine
 from pathlib import Path
 from typing import Any
 
-import pytest
 from sqlalchemy import select
 
 from app.models import AlarmRow
@@ -24,7 +23,6 @@ NOTICED_WITHIN_S = 60.0
 """A server with little processor time allows for its own delays, and waits."""
 
 
-@pytest.mark.long
 def test_a_silent_headset_is_paused_and_gets_its_whole_time(
     tmp_path: Path,
 ) -> None:

@@ -45,7 +45,6 @@ from app.science.avatar.configuration import (
 from app.science.avatar.mjcf import default_configuration
 from tests.protocol.edit_vectors import CALLS, FILE, make
 from tests.science.avatar.configurations import made_up
-from tests.support.repetitions import usually
 
 STANDARD = default_configuration()
 STIFF = Compliance()
@@ -56,10 +55,8 @@ EDITED = replace(
 )
 DOCS = Path(__file__).parents[2] / "docs"
 _OPERATIONS: TypeAdapter[Sequence[Any]] = TypeAdapter(list[Operation])
-MADE_UP = settings(
-    max_examples=usually(250, at_length=1000),
-    deadline=None,
-    suppress_health_check=[HealthCheck.too_slow],
+A_THOUSAND = settings(
+    max_examples=1_000, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 any_configuration = st.integers(0, 2**32).map(made_up)
 Json = dict[str, Any]
@@ -115,7 +112,7 @@ def test_the_docs_list_every_operation_with_its_keys() -> None:
             assert f"`{key}`" in row, (name, key)
 
 
-@MADE_UP
+@A_THOUSAND
 @given(any_configuration)
 def test_mirroring_twice_changes_nothing(configuration: Configuration) -> None:
     """Exchanging the sides twice restores the bytes; copying a side twice is copying it once."""
@@ -163,7 +160,7 @@ def canonical(configuration: Configuration) -> Configuration:
     return Configuration(**{**vars(configuration), "part_colliders": exceptions})
 
 
-@settings(MADE_UP, max_examples=usually(100, at_length=300))
+@settings(A_THOUSAND, max_examples=300)
 @given(any_configuration, any_configuration, st.sampled_from(COMPLIANT_GROUPS))
 def test_a_reset_gives_back_what_the_source_has(
     configuration: Configuration, source: Configuration, group: str
@@ -185,7 +182,7 @@ def test_a_reset_gives_back_what_the_source_has(
     assert after(configuration, foot).compliance == configuration.compliance
 
 
-@MADE_UP
+@A_THOUSAND
 @given(any_configuration)
 def test_conversions_keep_the_rules_of_the_thesis(configuration: Configuration) -> None:
     """To one joint the larger side counts; back, L becomes [-L, L]; every pose stays possible."""
@@ -218,7 +215,7 @@ def test_a_file_in_the_single_template_holds_the_converted_configuration(
     assert load_avatar(single_text(configuration)).configuration == single
 
 
-@MADE_UP
+@A_THOUSAND
 @given(any_configuration, st.data())
 def test_an_edit_of_a_symmetric_limit_goes_to_the_greater_side(
     configuration: Configuration, data: st.DataObject
@@ -316,7 +313,7 @@ def reversible(draw: st.DrawFn) -> tuple[Configuration, Json, Json]:
     return found, there, back
 
 
-@MADE_UP
+@A_THOUSAND
 @given(reversible())
 def test_an_operation_that_is_taken_back_restores_the_bytes(
     drawn: tuple[Configuration, Json, Json],
@@ -329,7 +326,7 @@ def test_an_operation_that_is_taken_back_restores_the_bytes(
     assert loaded(done.configuration).content_hash == loaded(before).content_hash
 
 
-@MADE_UP
+@A_THOUSAND
 @given(any_configuration, any_configuration)
 def test_differences_name_every_value_and_nothing_else(
     old: Configuration, new: Configuration

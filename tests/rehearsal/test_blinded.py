@@ -52,7 +52,6 @@ def rehearse(server: LiveServer, *more: object) -> Result:
     return Invoked("rehearse").run(*how, *study, *more)
 
 
-@pytest.mark.long
 def test_a_blinded_operator_rehearses_a_repeated_phase_and_a_withdrawal(server: LiveServer) -> None:
     """A blinded operator rehearses a repeated phase with a withdrawal, and a complete session.
 

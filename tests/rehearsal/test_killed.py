@@ -9,7 +9,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import psutil
-import pytest
 
 from tests.support.unit_tests import needs
 
@@ -26,7 +25,6 @@ time.sleep(1000)
 GENEROUS_S = 120.0
 
 
-@pytest.mark.long
 def test_a_killed_rehearsal_leaves_no_process(tmp_path: Path) -> None:
     """A rehearsal killed in mid-phase leaves neither its server nor the server's own processes."""
     needs("a server")

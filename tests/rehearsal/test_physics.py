@@ -140,7 +140,6 @@ def test_an_avatar_with_longer_legs_stands_on_the_same_floor() -> None:
         assert shown.root_position_m == pytest.approx([0.1, scale * height_m, 0.2])
 
 
-@pytest.mark.long
 def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> None:
     """A session with a physics avatar completes and records configuration and joint errors.
 

@@ -52,7 +52,6 @@ def _lines(record: bytes) -> list[dict[str, Any]]:
     return [json.loads(line) for line in record.decode().splitlines()]
 
 
-@pytest.mark.long
 @pytest.mark.timeout(600)
 def test_a_visit_crosses_the_road_and_all_of_it_is_stored_and_exported(tmp_path: Path) -> None:
     """Both crossings have their measures, their record hashes to what is stored, and are exported.
