@@ -54,7 +54,9 @@ const NO_PROBLEMS: readonly Problem[] = [];
 
 /** The problems of the assumptions for which a pilot was refused. */
 function problemsOf(refusal: unknown): readonly Problem[] {
-  return refusal instanceof ApiError ? refusal.details : NO_PROBLEMS;
+  return refusal instanceof ApiError && refusal.code === "invalid_config"
+    ? refusal.details
+    : NO_PROBLEMS;
 }
 
 interface FormProps {
