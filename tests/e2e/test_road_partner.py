@@ -157,9 +157,10 @@ def test_a_partner_that_is_killed_is_seen_and_the_phase_can_be_done_again(
 def _wait_until_complete(visit: Visit) -> None:
     """Wait until the server has ended the traffic, before the other program ends."""
     for _ in range(200):
-        if _road(visit)["runs"][-1]["ended"] is not None:
+        if _road(visit)["runs"][-1]["ended"] != "running":
             return
         time.sleep(0.1)
+    raise AssertionError("the traffic still runs, long after its phase was done")
 
 
 def _has_crossed(phase: Json) -> bool:
