@@ -135,6 +135,9 @@ function Summary({ study, kind, dashboard }: SummaryProps): JSX.Element {
   const { t } = useTexts();
   const declared = useQuery(preregistrationQuery(study.key, kind));
   const statistics = useQuery(statisticsQuery(study.key, kind));
+  // From the top down: what stands below does not move when what is above it arrives.
+  const isTestRead = !declared.isPending;
+  const areEffectsRead = isTestRead && !statistics.isPending;
   return (
     <div className={classes.page}>
       <SummaryRow study={study} kind={kind} found={dashboard} />
@@ -144,30 +147,43 @@ function Summary({ study, kind, dashboard }: SummaryProps): JSX.Element {
         </Notice>
       )}
       <Loaded query={declared}>{(view) => <MainTest view={view} />}</Loaded>
-      <Effects study={study} kind={kind} query={statistics} />
-      <section>
-        <div className={classes.titleRow}>
-          <Title order={2}>{t("summary.figures")}</Title>
-          <Anchor component={Link} href={`/studies/${study.key}/dashboard`}>
-            {t("summary.more")}
-          </Anchor>
-        </div>
-        <div className={figures.figures}>
-          {dashboard.figures
-            .filter(({ figure }) => figure !== null)
-            .map((entry) => (
-              <FigureCard
-                key={entry.key}
-                studyKey={study.key}
-                entry={entry}
-                filter={{ ...filterFrom(new URLSearchParams()), kind }}
-              />
-            ))}
-        </div>
-      </section>
-      {declared.data?.declaration != null && <Deviations deviations={declared.data.deviations} />}
-      {statistics.data !== undefined && <LeftOut study={study} found={statistics.data} />}
+      {isTestRead && <Effects study={study} kind={kind} query={statistics} />}
+      {areEffectsRead && (
+        <>
+          <Figures study={study} kind={kind} dashboard={dashboard} />
+          {declared.data?.declaration != null && (
+            <Deviations deviations={declared.data.deviations} />
+          )}
+          {statistics.data !== undefined && <LeftOut study={study} found={statistics.data} />}
+        </>
+      )}
     </div>
+  );
+}
+
+function Figures({ study, kind, dashboard }: SummaryProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <section>
+      <div className={classes.titleRow}>
+        <Title order={2}>{t("summary.figures")}</Title>
+        <Anchor component={Link} href={`/studies/${study.key}/dashboard`}>
+          {t("summary.more")}
+        </Anchor>
+      </div>
+      <div className={figures.figures}>
+        {dashboard.figures
+          .filter(({ figure }) => figure !== null)
+          .map((entry) => (
+            <FigureCard
+              key={entry.key}
+              studyKey={study.key}
+              entry={entry}
+              filter={{ ...filterFrom(new URLSearchParams()), kind }}
+            />
+          ))}
+      </div>
+    </section>
   );
 }
 
