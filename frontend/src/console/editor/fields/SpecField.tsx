@@ -153,8 +153,11 @@ const isWide = (spec: Spec): boolean =>
   spec.kind === "texts" ||
   spec.kind === "object" ||
   spec.kind === "map" ||
-  (spec.kind === "words" && spec.pattern === null) ||
-  (spec.kind === "list" && !isWords(spec.item));
+  isProse(spec) ||
+  (spec.kind === "list" && (!isWords(spec.item) || isProse(spec.item)));
+
+/** Keys have a pattern and are short; a text without a pattern is prose. */
+const isProse = (spec: Spec): boolean => spec.kind === "words" && spec.pattern === null;
 
 function UnionFields({
   path,
@@ -270,6 +273,7 @@ function TagsField({ path, spec, label }: TagsFieldProps): JSX.Element {
       label={label}
       description={hint(String(path.at(-1)))}
       error={problem}
+      classNames={isProse(spec.item) ? { pill: classes.prose ?? "" } : {}}
       data={spec.item.kind === "choice" ? [...spec.item.values] : []}
       value={words}
       acceptValueOnBlur

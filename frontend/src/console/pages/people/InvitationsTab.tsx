@@ -76,15 +76,13 @@ function Row({ invitation }: { readonly invitation: Invitation }): JSX.Element {
           <span className={classes.sub}>{t("invitations.usedBy", { name: used_by })}</span>
         )}
       </Table.Td>
-      <Table.Td className={classes.nowrap ?? ""}>
+      <Table.Td>
         {dateTime(invitation.created_at, language)}
         <span className={classes.sub}>
           {t("invitations.by", { name: actorName(invitation.created_by) })}
         </span>
       </Table.Td>
-      <Table.Td className={classes.nowrap ?? ""}>
-        {dateTime(invitation.expires_at, language)}
-      </Table.Td>
+      <Table.Td>{dateTime(invitation.expires_at, language)}</Table.Td>
       <Table.Td className={classes.rowActions ?? ""}>
         {status === "open" && <Revoke invitation={invitation} />}
       </Table.Td>
