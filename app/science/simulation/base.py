@@ -18,6 +18,9 @@ class BaseMovement:
     """Plays back a looping movement at any time, in full or damped for a task."""
 
     def __init__(self, movement: Movement, offset_s: float) -> None:
+        from app.science.simulation import posture_kernels  # loads the compiler
+
+        self._kernels = posture_kernels
         if not movement.loops:
             raise SimulationError("The base movement must loop: pass it through `loop` first.")
         q, root = movement.rotations, movement.root_positions_m
@@ -29,11 +32,11 @@ class BaseMovement:
         self._rotations = np.concatenate((q, seam[np.newaxis]))
         # As plain numbers, since one row is read at a time.
         self._roots: list[list[float]] = [*root.tolist(), root[0].tolist()]
-        gains = np.full((JOINT_COUNT, 1), _TASK_GAIN_ELSE)
+        gains = np.full(JOINT_COUNT, _TASK_GAIN_ELSE)
         for name, gain in _TASK_GAIN.items():
             gains[JOINT_INDEX[name]] = gain
         gains[_LEG_JOINTS] = 0.0
-        self._gains, self._rest = gains, (1.0 - gains) * mean
+        self._gains, self._rest = gains, (1.0 - gains)[:, np.newaxis] * mean
         self._middle: list[float] = root.mean(axis=0).tolist()
 
     @property
@@ -45,12 +48,6 @@ class BaseMovement:
         place = ((time_s + self._offset_s) * self._rate_hz) % self._frames
         frame = min(int(place), self._frames - 1)
         return frame, place - frame
-
-    def _blend(self, time_s: float) -> FloatArray:
-        frame, share = self._frame_at(time_s)
-        rows = self._rotations
-        blended: FloatArray = rows[frame] * (1.0 - share) + rows[frame + 1] * share
-        return blended
 
     def root(self, time_s: float) -> Vector:
         """Return the position of the hips, x and z around the origin, as recorded."""
@@ -67,14 +64,10 @@ class BaseMovement:
 
     def whole(self, time_s: float) -> FloatArray:
         """Return the local rotations (22, 4) as recorded."""
-        return _unit_rows(self._blend(time_s))
+        frame, share = self._frame_at(time_s)
+        return self._kernels.between(self._rotations, frame, share)
 
     def damped(self, time_s: float) -> FloatArray:
         """Return the local rotations (22, 4), damped towards their mean; those of legs are it."""
-        return _unit_rows(self._rest + self._gains * self._blend(time_s))
-
-
-def _unit_rows(rows: FloatArray) -> FloatArray:
-    length = np.sqrt(np.einsum("ji,ji->j", rows, rows))
-    unit: FloatArray = rows / length[:, np.newaxis]
-    return unit
+        frame, share = self._frame_at(time_s)
+        return self._kernels.between(self._rotations, frame, share, self._rest, self._gains)

@@ -49,6 +49,29 @@ def _offset(offsets: FloatArray, joint: int) -> Vector:
 
 
 @compiled
+def between(
+    frames: FloatArray, frame: int, share: float,
+    rest: FloatArray | None = None, gains: FloatArray | None = None,
+) -> FloatArray:  # fmt: skip
+    """Return the local rotations (n, 4) a share of the way from a frame (N, n, 4) to the next.
+
+    With `rest` (n, 4) and `gains` (n,) a joint's are rest + gain * that. All get length 1.
+    """
+    pose: FloatArray = np.empty_like(frames[frame])
+    for joint in range(pose.shape[0]):
+        for part in range(4):
+            value = frames[frame, joint, part] * (1.0 - share)
+            value += frames[frame + 1, joint, part] * share
+            if rest is not None and gains is not None:
+                value = rest[joint, part] + gains[joint] * value
+            pose[joint, part] = value
+        w, x, y, z = _turn(pose, joint)
+        length = sqrt((w * w + y * y) + (x * x + z * z))
+        _set_turn(pose, joint, (w / length, x / length, y / length, z / length))
+    return pose
+
+
+@compiled
 def bend_trunk(local: FloatArray, joints: IntArray, x: float, z: float) -> None:
     """Turn each of the joints by the same small rotation, with half angles x and z."""
     scale = 1.0 / sqrt(1.0 + x * x + z * z)

@@ -5,9 +5,33 @@ Importing this module loads the compiler; a simulation imports it when it is cre
 
 import numpy as np
 
+from app.science import rotations
 from app.science.avatar.mjcf import IndexArray
-from app.science.compiled import compiled_fused
-from app.science.rotations import FloatArray
+from app.science.compiled import compiled, compiled_fused, compiled_inside
+from app.science.rotations import FloatArray, Quaternion, Vector
+
+q_blend = compiled_inside(rotations.q_blend)
+
+
+@compiled
+def hips_way(
+    start: tuple[Vector, Quaternion], end: tuple[Vector, Quaternion], steps: int
+) -> FloatArray:
+    """Return the poses (steps, 7), position and quaternion, on the straight way between two.
+
+    The first is a step away from the start, the last is the end.
+    """
+    poses = np.empty((steps, 7))
+    for row in range(steps):
+        share = (row + 1) / steps
+        for axis in range(3):
+            poses[row, axis] = start[0][axis] + share * (end[0][axis] - start[0][axis])
+        turn = q_blend(start[1], end[1], share) if row < steps - 1 else end[1]
+        for part in range(4):
+            poses[row, 3 + part] = turn[part]
+    for axis in range(3):
+        poses[steps - 1, axis] = end[0][axis]
+    return poses
 
 
 @compiled_fused

@@ -1,14 +1,14 @@
 """Move the avatar's hips with the participant's: in straight lines, or immediately after a jump.
 
-Plain floats, since this runs at every step and NumPy is much slower for arrays of three or four
-numbers.
+Plain floats, since this runs at every frame and NumPy is much slower for arrays of three or four
+numbers; the poses of a frame's steps are computed in one compiled call.
 """
 
 from math import acos, dist, isfinite, pi, sqrt
 from typing import TYPE_CHECKING
 
 from app.science.avatar.mjcf import HingeTable, SimulationError
-from app.science.rotations import FloatArray, Quaternion, Vector, q_blend
+from app.science.rotations import FloatArray, Quaternion, Vector
 
 if TYPE_CHECKING:
     import mujoco
@@ -23,6 +23,9 @@ class HipsPath:
     """The current and the next pose of the hips, (3,) and (4,) wxyz in the world."""
 
     def __init__(self, data: "mujoco.MjData", table: HingeTable) -> None:
+        from app.science.avatar.simulation import frame_kernels  # loads the compiler
+
+        self._kernels = frame_kernels
         self._data, self._table = data, table
         self._position = data.mocap_pos[table.mocap]
         self._rotation = data.mocap_quat[table.mocap]
@@ -53,20 +56,23 @@ class HipsPath:
             raise SimulationError(f"The hips cannot be at {position_m}, turned by {rotation}.")
         self._jump_to(pose)
 
-    def go(self, fraction: float) -> None:
-        """Interpolate the pose: fraction 0 gives the last frame's pose, 1 gives this frame's."""
+    def way(self, steps: int) -> FloatArray | None:
+        """Return the poses (steps, 7) at the ends of a frame's steps, None if the hips stay."""
+        if self._previous == self._next:
+            return None
+        return self._kernels.hips_way(self._previous, self._next, steps)
+
+    def put(self, pose: FloatArray) -> None:
+        """Put the hips into one of these poses."""
+        self._position[:] = pose[:3]
+        self._rotation[:] = pose[3:]
+
+    def arrive(self) -> None:
+        """Put the hips into this frame's pose, from which they go on."""
         if self._previous == self._next:
             return
-        if fraction >= 1.0:
-            self._previous = self._next
-            self._position[:], self._rotation[:] = self._next
-            return
-        (x, y, z), turn = self._previous
-        (to_x, to_y, to_z), to_turn = self._next
-        self._position[0] = x + fraction * (to_x - x)
-        self._position[1] = y + fraction * (to_y - y)
-        self._position[2] = z + fraction * (to_z - z)
-        self._rotation[:] = q_blend(turn, to_turn, fraction)
+        self._previous = self._next
+        self._position[:], self._rotation[:] = self._next
 
     def put_root(self) -> None:
         """Move welded hips to the pose of the body that they are welded to, at rest."""

@@ -211,7 +211,7 @@ class PhysicsAvatar:
         previous_qpos = self._qpos.copy()
         self._simulate(count, step_s)
         self._steps += count
-        self.hips.go(1.0)
+        self.hips.arrive()
         if self._failed():
             self._restore(previous_qpos)
         else:
@@ -279,9 +279,11 @@ class PhysicsAvatar:
         if self._speeds is not None:
             controls[:, slots + 1] = self._speeds
         step, model, data, ctrl = self._mujoco.mj_step, self.model, self.data, self._ctrl
+        way = self.hips.way(count)
         for row in range(count):
             ctrl[:] = controls[row]
-            self.hips.go((row + 1) / count)
+            if way is not None:
+                self.hips.put(way[row])
             step(model, data)
         self._command = last_command
 

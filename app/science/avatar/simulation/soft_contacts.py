@@ -45,14 +45,17 @@ class SoftContacts:
 
     def watch(self) -> None:
         """Soften the contacts of parts deep inside something, and restore those of the others."""
-        touching = self._data.ncon > 0
-        if not self._any_soft and not (touching and self._data.contact.dist.min() < -DEEP_M):
+        if not self._any_soft and not self._is_any_deep():
             return
         deepest = self._deepest_m()
         soft = np.where(self._soft, deepest > FREE_M, deepest > DEEP_M)
         if not np.array_equal(soft, self._soft):
             self._soft = soft
             self._write()
+
+    def _is_any_deep(self) -> bool:
+        # The smallest of a few numbers, without the checks of an array's own `min`.
+        return self._data.ncon > 0 and bool(np.minimum.reduce(self._data.contact.dist) < -DEEP_M)
 
     def _deepest_m(self) -> FloatArray:
         """Return the greatest penetration depth of each body; zero for the world."""

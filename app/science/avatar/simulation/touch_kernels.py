@@ -30,6 +30,17 @@ def mark_contacts(
 
 
 @compiled
+def left(continuing: Bools, near: Bools) -> list[tuple[int, int]]:
+    """Return the pairs (surface, part) that touched and are not known to be near, of (S, P)."""
+    return [
+        (surface, part)
+        for surface in range(continuing.shape[0])
+        for part in range(continuing.shape[1])
+        if continuing[surface, part] and not near[surface, part]
+    ]
+
+
+@compiled
 def near_geoms(
     mark: int, places_m: FloatArray, radii_m: FloatArray, solid: npt.NDArray[np.int32],
     joint_of: Integers, margin_m: float,

@@ -49,6 +49,8 @@ class SurfaceTouches:
 
         self._mujoco, self._kernels = mujoco, touch_kernels
         self._model, self._data = avatar.model, avatar.data
+        # MuJoCo's own array, which changes when other shapes are chosen.
+        self._collides = avatar.model.geom_contype
         self._margin_m = margin_m
         boxes = avatar.boxes
         self._surface_geoms = [boxes.geoms[name] for name in surfaces]
@@ -56,6 +58,9 @@ class SurfaceTouches:
         self._surface_of = np.full(avatar.model.ngeom, -1)
         self._surface_of[self._surface_geoms] = np.arange(len(surfaces))
         self._joint_of = _parts_of_geoms(avatar.model, parts)
+        self._geoms_of = [
+            np.flatnonzero(self._joint_of == row).tolist() for row in range(len(parts))
+        ]
         self._continuing: Bools = np.zeros((len(surfaces), len(parts)), dtype=np.bool_)
 
     def read(self) -> tuple[Bools, Bools]:
@@ -70,11 +75,11 @@ class SurfaceTouches:
         near = touched.copy()
         for row in self._marks:
             self._read_mark(row, touched, near)
-        apart = self._continuing & ~near
-        if apart.any():
-            for surface, joint in np.argwhere(apart):
-                geoms = np.flatnonzero((self._joint_of == joint) & self._solid())
-                near[surface, joint] = self._distance_m(int(surface), geoms) <= self._margin_m
+        for surface, joint in self._kernels.left(self._continuing, near):
+            # Of a part's alternative shapes some are switched off.
+            solid = [geom for geom in self._geoms_of[joint] if self._collides[geom] > 0]
+            distances = [self._distance_m(surface, geom) for geom in solid]
+            near[surface, joint] = min(distances, default=np.inf) <= self._margin_m
         self._continuing = near & (self._continuing | touched)
         return touched, near
 
@@ -82,24 +87,17 @@ class SurfaceTouches:
         model = self._model
         for geom in self._kernels.near_geoms(
             self._surface_geoms[surface], self._data.geom_xpos, model.geom_rbound,
-            model.geom_contype, self._joint_of, self._margin_m,
+            self._collides, self._joint_of, self._margin_m,
         ):  # fmt: skip
-            distance_m = self._distance_m(surface, np.array([geom]))
+            distance_m = self._distance_m(surface, geom)
             touched[surface, self._joint_of[geom]] |= distance_m <= 0.0
             near[surface, self._joint_of[geom]] |= distance_m <= self._margin_m
 
-    def _solid(self) -> Bools:
-        """Return which geoms can collide; of a part's alternative shapes some are switched off."""
-        return np.asarray(self._model.geom_contype > 0)
-
-    def _distance_m(self, surface: int, geoms: npt.NDArray[np.intp]) -> float:
-        """Return the distance of the nearest of these geoms, at most twice the margin."""
+    def _distance_m(self, surface: int, geom: int) -> float:
+        """Return the distance of a geom, at most twice the margin."""
         mark, farthest = self._surface_geoms[surface], 2.0 * self._margin_m
         distance = self._mujoco.mj_geomDistance
-        distances = [
-            distance(self._model, self._data, int(geom), mark, farthest, None) for geom in geoms
-        ]
-        return float(min(distances, default=farthest))
+        return float(distance(self._model, self._data, geom, mark, farthest, None))
 
 
 def _parts_of_geoms(model: "mujoco.MjModel", parts: Sequence[str]) -> npt.NDArray[np.int64]:

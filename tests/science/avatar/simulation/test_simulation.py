@@ -9,6 +9,7 @@ import pytest
 from app.science.avatar.body.parts import AXES, AXIS_NAMES
 from app.science.avatar.configuration.configuration import Hips
 from app.science.avatar.mjcf.hinge_table import SimulationError
+from app.science.avatar.simulation import frame_kernels
 from app.science.avatar.simulation.simulation import PhysicsAvatar
 from app.science.avatar.targets.targets import joint_rotations
 from app.science.latency.achieved_latency import achieved_latency
@@ -28,6 +29,22 @@ def test_the_t_pose_stays() -> None:
     run(body, angles(), 180)
     assert np.degrees(np.nanmax(np.abs(body.state().angles_rad))) < 1.0
     assert not body.contacts()
+
+
+def test_hips_move_in_a_straight_line_at_one_speed() -> None:
+    """Each step of a frame brings the hips an equal way nearer to the frame's pose, the last to it.
+
+    They turn by equal angles; the way of half as many steps is every other of them.
+    """
+    start = ((0.0, 0.9, 0.0), (1.0, 0.0, 0.0, 0.0))
+    end = ((0.06, 0.93, -0.03), (math.cos(0.2), 0.0, math.sin(0.2), 0.0))
+    way = frame_kernels.hips_way(start, end, 6)
+    steps = np.diff(way[:, :3], axis=0, prepend=[start[0]])
+    np.testing.assert_allclose(steps, np.tile([0.01, 0.005, -0.005], (6, 1)), atol=1e-15)
+    turns = geodesic_angle(np.vstack(([start[1]], way[:-1, 3:])), way[:, 3:])
+    np.testing.assert_allclose(turns, 0.4 / 6.0, rtol=0.01)
+    np.testing.assert_array_equal(way[-1], (*end[0], *end[1]))
+    np.testing.assert_allclose(frame_kernels.hips_way(start, end, 3), way[1::2], atol=1e-15)
 
 
 @pytest.mark.parametrize(
