@@ -98,7 +98,7 @@ def test_the_report_marks_itself_and_has_what_forms_ask_for(
         (("--participants", 0), "1 to 10000 are valid"),
         (("--workers", 65), "1 to 64 are valid"),
         (("--shard", "1/3"), "--shard needs --out"),
-        (("--avatar", "robot"), "physics and delayed_copy are valid"),
+        (("--avatar", "robot"), "physics_without_fingers and delayed_copy are valid"),
     ],
 )
 def test_unusable_input_is_refused(study: Path, arguments: tuple[object, ...], said: str) -> None:

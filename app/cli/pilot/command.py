@@ -48,7 +48,10 @@ def cohort(
     ] = None,
     avatar: Annotated[
         str | None,
-        typer.Option(help="physics or delayed_copy, which is faster; else as the study has it."),
+        typer.Option(
+            help="physics, physics_without_fingers or delayed_copy, each faster than the one before"
+            "; else as the study has it."
+        ),
     ] = None,
     as_json: _Json = False,
 ) -> None:

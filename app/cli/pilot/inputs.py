@@ -139,7 +139,9 @@ def of_file(path: Path, error: ConfigError) -> ValueError:
 def read_avatar(given: str | None) -> AvatarKind | None:
     """Return the kind of avatar of an option; None if it is not given."""
     match given:
-        case None | "physics" | "delayed_copy":
+        case None | "physics" | "physics_without_fingers" | "delayed_copy":
             return given
         case _:
-            raise ValueError(f"--avatar {given}: physics and delayed_copy are valid")
+            raise ValueError(
+                f"--avatar {given}: physics, physics_without_fingers and delayed_copy are valid"
+            )

@@ -14,7 +14,7 @@ from app.features.results.pilot.order import (
 )
 
 State = Literal["simulating", "stopped", "ready", "failed"]
-Avatar = Literal["physics", "delayed_copy"]
+Avatar = Literal["physics", "physics_without_fingers", "delayed_copy"]
 Seed = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
 Assumed = Annotated[str, Field(min_length=1, max_length=100_000, description="YAML")]
 Counted = Annotated[int, Field(strict=True, ge=FEWEST_PARTICIPANTS, le=MOST_PARTICIPANTS)]

@@ -24,7 +24,7 @@ interface PilotOrderProps {
 const PEOPLE = [1, 1000] as const;
 const SETS = [50, 10_000] as const;
 const LARGEST_SEED = 2 ** 31 - 1;
-const AVATARS = ["physics", "delayed_copy"] as const;
+const AVATARS = ["physics", "physics_without_fingers", "delayed_copy"] as const;
 
 const isWithin = (value: number | string, [low, high]: readonly [number, number]): boolean =>
   typeof value === "number" && Number.isInteger(value) && value >= low && value <= high;

@@ -5320,7 +5320,7 @@ export interface components {
              * Avatar
              * @enum {string}
              */
-            readonly avatar: "physics" | "delayed_copy";
+            readonly avatar: "physics" | "physics_without_fingers" | "delayed_copy";
             /** Changes */
             readonly changes: readonly components["schemas"]["ChangeView"][];
             /** Ethics */
@@ -8557,7 +8557,7 @@ export interface components {
             /** Assumptions */
             readonly assumptions?: string | null;
             /** Avatar */
-            readonly avatar?: ("physics" | "delayed_copy") | null;
+            readonly avatar?: ("physics" | "physics_without_fingers" | "delayed_copy") | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -9425,7 +9425,7 @@ export interface components {
              * Avatar
              * @enum {string}
              */
-            readonly avatar: "physics" | "delayed_copy";
+            readonly avatar: "physics" | "physics_without_fingers" | "delayed_copy";
             /** Most Participants */
             readonly most_participants: number | null;
             /** Numbers */
@@ -9450,7 +9450,7 @@ export interface components {
              */
             readonly at: string;
             /** Avatar */
-            readonly avatar: ("physics" | "delayed_copy") | null;
+            readonly avatar: ("physics" | "physics_without_fingers" | "delayed_copy") | null;
             /** By */
             readonly by: string;
             /** Content Hash */
@@ -9526,7 +9526,7 @@ export interface components {
              */
             readonly at: string;
             /** Avatar */
-            readonly avatar: ("physics" | "delayed_copy") | null;
+            readonly avatar: ("physics" | "physics_without_fingers" | "delayed_copy") | null;
             /** By */
             readonly by: string;
             /** Content Hash */
