@@ -89,7 +89,7 @@ class Page:
     def hear(self, kind: str, step: int = 0) -> Json:
         """Return the next message of a kind, of a step at least."""
         while True:
-            message: Json = json.loads(self.socket.recv(timeout=20))
+            message: Json = json.loads(self.socket.recv(timeout=120))
             if message["type"] == kind and message.get("step", step) >= step:
                 return message
 
@@ -97,7 +97,7 @@ class Page:
         """Return the code with which the server closes the socket."""
         code = str(self.hear("error")["code"])
         with pytest.raises(ConnectionClosed):
-            self.socket.recv(timeout=20)
+            self.socket.recv(timeout=120)
         return code
 
 
