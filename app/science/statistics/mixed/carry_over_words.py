@@ -96,4 +96,6 @@ def _about_sequence(test: TermTest | None) -> Conclusion:
 
 
 def _f_of(test: TermTest) -> str:
-    return f"F({test.df_term}, {test.df_error:.1f}) = {test.f:.2f}, p = {test.p:.3g}"
+    # Without the zero that no p has before its point, as in every table.
+    p = "p < .001" if test.p < 0.001 else f"p = {test.p:.3f}".replace("= 0.", "= .")
+    return f"F({test.df_term}, {test.df_error:.1f}) = {test.f:.2f}, {p}"

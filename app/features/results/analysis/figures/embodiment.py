@@ -24,7 +24,7 @@ COMPONENTS: Mapping[str, tuple[str, str]] = {
     "ownership": ("Body ownership", "Ownership"),
     "agency": ("Agency", "Agency"),
     "location": ("Self-location", "Location"),
-    "soe_thesis": ("Sense of embodiment (Karas 2020)", "Embodiment"),
+    "soe_thesis": ("Sense of embodiment (as in the thesis)", "Embodiment"),
 }
 
 

@@ -48,6 +48,8 @@ BODIES = (
 OPEN = "Tests use valid completed sessions; open sessions may still change and are left out."
 SIMULATED = "These are simulated data: they test the analysis and say nothing about people."
 TEST = "These are test sessions; their results mean nothing."
+MARKS = {"simulated": "Simulated data, not people", "test": "Test sessions, not people"}
+"""What a line that is copied into a paper begins with, if it is not of people."""
 
 
 def answers_of(material: Material) -> StatisticsResults:
@@ -64,8 +66,20 @@ def answers_of(material: Material) -> StatisticsResults:
         alpha=alpha,
         declared=declared is not None,
         notes=_notes(material),
-        measures=list(_measures_by_body(material, alpha)),
+        measures=[_marked(one, material.kind) for one in _measures_by_body(material, alpha)],
     )
+
+
+def _marked(measure: MeasureView, kind: str) -> MeasureView:
+    """Return the measure with its lines for a paper marked if they are not of people."""
+    mark = MARKS.get(kind)
+    if mark is None:
+        return measure
+    results = [
+        one.model_copy(update={"apa": f"{mark}. {one.apa}"}) if one.apa else one
+        for one in measure.results
+    ]
+    return measure.model_copy(update={"results": results})
 
 
 def _measures_by_body(material: Material, alpha: float) -> Iterator[MeasureView]:

@@ -1,7 +1,7 @@
 /** A line for every tested measure and task, with its effect on one scale: what readers look for. */
 import { Title } from "@mantine/core";
 import type { Effect, Glance, Measure } from "@shared/api/analysis";
-import { number } from "@shared/format";
+import { decimals, number } from "@shared/format";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
 import table from "../../ui/NumbersTable.module.css";
@@ -106,9 +106,15 @@ function Lines({ measure, reach, onChoose }: LinesProps): JSX.Element {
               </button>
             </th>
           )}
-          <td>{taskName(line, t)}</td>
+          <td>
+            {taskName(line, t)}
+            <SampleSize effect={effectOf(line.limb)} />
+          </td>
           <td className={classes.effect}>
-            <EffectMark effect={effectOf(line.limb)} reach={reach} />
+            <div className={classes.sized}>
+              <span>{sizeOf(effectOf(line.limb), language)}</span>
+              <EffectMark effect={effectOf(line.limb)} reach={reach} />
+            </div>
           </td>
           <td>{differenceOf(effectOf(line.limb), measure.unit, language)}</td>
           <td>{line.differ ?? t("glance.untested")}</td>
@@ -165,15 +171,28 @@ function EffectMark({
   );
 }
 
-function differenceOf(effect: Effect | undefined, unit: string, language: string): string {
-  if (effect === undefined) return "–";
-  const text = `${signed(effect.difference, language)} ${unit}`.trim();
-  if (effect.low === null || effect.high === null) return text;
-  return `${text} [${signed(effect.low, language)}, ${signed(effect.high, language)}]`;
+function SampleSize({ effect }: { readonly effect: Effect | undefined }): JSX.Element | null {
+  const { t } = useTexts();
+  if (effect === undefined) return null;
+  return <span className={classes.unit}>{` · ${t("glance.n", { n: effect.n })}`}</span>;
 }
 
-const signed = (value: number, language: string): string =>
-  number(value, language, 2).replace("-", "−");
+/** The effect in standard deviations, as a number beside its mark. */
+const sizeOf = (effect: Effect | undefined, language: string): string =>
+  effect?.standardised == null ? "–" : decimals(effect.standardised, language, 2);
+
+function differenceOf(effect: Effect | undefined, unit: string, language: string): string {
+  if (effect === undefined) return "–";
+  const text = `${decimals(effect.difference, language, 2)} ${unit}`.trim();
+  if (effect.low === null || effect.high === null) return text;
+  return `${text} ${intervalOf(effect.low, effect.high, language)}`;
+}
+
+/** `[−1.50, 0.25]`; where a comma is the decimal sign, a semicolon stands between the ends. */
+export function intervalOf(low: number, high: number, language: string): string {
+  const [from, to] = [low, high].map((end) => decimals(end, language, 2));
+  return `[${from}${from?.includes(",") ? ";" : ","} ${to}]`;
+}
 
 function trendOf({ trend, way }: Glance, t: (key: Key) => string): string {
   if (trend === null) return t("glance.untested");

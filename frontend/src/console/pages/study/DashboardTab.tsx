@@ -45,6 +45,8 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
   const [filter, setFilter] = useFilter(study.key);
   const found = useQuery(dashboardQuery(study.key, filter, FIRST)).data;
   const chosen = chosenFields(filter);
+  // The study's state does not depend on what somebody looks at.
+  const all = useQuery(dashboardQuery(study.key, unfiltered(filter.kind), FIRST)).data;
   const [choosing, choice] = useDisclosure(chosen > 0);
   return (
     <>
@@ -79,8 +81,9 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
       <SummaryRow
         study={study}
         kind={filter.kind}
-        found={found}
-        isBehind={chosen === 0 && found?.current === false}
+        found={all}
+        isBehind={all?.current === false}
+        note={chosen > 0 ? t("summary.unfiltered") : undefined}
       />
       {found?.filter.rows === "all" && (
         <div className={classes.banner}>

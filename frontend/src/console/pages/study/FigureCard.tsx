@@ -18,6 +18,8 @@ interface FigureCardProps {
   readonly filter: Filter;
   /** As high as the window allows for two rows, with the caption in one line until it is read. */
   readonly isCompact?: boolean;
+  /** Drawn when it comes near the window; not where it may be printed at any time. */
+  readonly isLazy?: boolean;
 }
 
 export function FigureCard({
@@ -25,6 +27,7 @@ export function FigureCard({
   entry,
   filter,
   isCompact = false,
+  isLazy = true,
 }: FigureCardProps): JSX.Element {
   const { t } = useTexts();
   const watermark = filter.kind === "simulated" ? t("simulated.watermark") : null;
@@ -52,7 +55,7 @@ export function FigureCard({
             loading={t("dashboard.loading")}
             failed={t("dashboard.failed")}
             fills={isCompact}
-            lazy
+            lazy={isLazy}
           />
         </div>
       )}

@@ -1,12 +1,13 @@
 /** A study's results in one row: how many of those planned, balance, quality, the main effect. */
 import type { Measure, PrimaryResult } from "@shared/api/analysis";
 import type { DataKind, Ledger, StudyDetail } from "@shared/api/types";
-import { number } from "@shared/format";
+import { decimals } from "@shared/format";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX, ReactNode } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../../i18n";
 import { ledgerQuery, preregistrationQuery, statisticsQuery } from "../../queries";
+import { intervalOf } from "./AtAGlance";
 import classes from "./SummaryRow.module.css";
 
 interface SummaryRowProps {
@@ -14,11 +15,19 @@ interface SummaryRowProps {
   readonly kind: DataKind;
   /** What is drawn; undefined until something is. */
   readonly found: { readonly n_completed: number; readonly n_not_valid: number } | undefined;
-  /** Newer sessions are being drawn: until then the numbers are those of what is drawn. */
+  /** Newer sessions are being drawn: until then only the ledger knows how many have finished. */
   readonly isBehind?: boolean;
+  /** What else is said of the numbers. */
+  readonly note?: string | undefined;
 }
 
-export function SummaryRow({ study, kind, found, isBehind = false }: SummaryRowProps): JSX.Element {
+export function SummaryRow({
+  study,
+  kind,
+  found,
+  isBehind = false,
+  note,
+}: SummaryRowProps): JSX.Element {
   const { t } = useTexts();
   const ledger = useQuery(ledgerQuery(study.key, kind)).data;
   const declared = useQuery(preregistrationQuery(study.key, kind)).data;
@@ -26,20 +35,22 @@ export function SummaryRow({ study, kind, found, isBehind = false }: SummaryRowP
   const planned = declared?.declaration?.planned_n ?? ledger?.slots.length ?? null;
   const valid = found === undefined ? null : found.n_completed - found.n_not_valid;
   const finished = ledger?.slots.filter(({ state }) => state === "completed").length ?? 0;
+  // What is drawn may be behind what the ledger has, and then says nothing of the study's state.
+  const isDrawn = !isBehind || finished <= (valid ?? 0);
   return (
     <section className={classes.row} aria-label={t("summary.label")}>
       <Tile name={t("summary.n")} to={`/studies/${study.key}/ledger`}>
-        <strong>{valid ?? "…"}</strong>{" "}
-        {isBehind && finished > (valid ?? 0)
-          ? t("summary.drawn", { finished })
-          : planned !== null && planned > 0 && t("summary.ofPlanned", { planned })}
+        <strong>{(isDrawn ? valid : finished) ?? "…"}</strong>{" "}
+        {isDrawn
+          ? planned !== null && planned > 0 && t("summary.ofPlanned", { planned })
+          : t("summary.drawn")}
       </Tile>
       <Tile name={t("summary.balance")} to={`/studies/${study.key}/ledger`}>
         {ledger === undefined ? "…" : <Balance ledger={ledger} />}
       </Tile>
       <Tile name={t("summary.quality")} to={`/studies/${study.key}/sessions`}>
-        <strong>{valid ?? "…"}</strong>{" "}
-        {found !== undefined && t("summary.valid", { count: found.n_completed })}
+        <strong>{isDrawn && valid !== null ? valid : "…"}</strong>{" "}
+        {isDrawn && found !== undefined && t("summary.valid", { count: found.n_completed })}
       </Tile>
       <Tile
         name={t(declared?.result == null ? "summary.effect" : "summary.primary")}
@@ -49,9 +60,10 @@ export function SummaryRow({ study, kind, found, isBehind = false }: SummaryRowP
         <MainEffect
           primary={declared?.result ?? null}
           measures={statistics?.measures ?? null}
-          isCurrent={statistics?.current ?? false}
+          isCurrent={(statistics?.current ?? false) || (isDrawn && found?.n_completed === 0)}
         />
       </Tile>
+      {note !== undefined && <p className={classes.note}>{note}</p>}
     </section>
   );
 }
@@ -113,18 +125,16 @@ function MainEffect({ primary, measures, isCurrent }: MainEffectProps): JSX.Elem
   if (first === undefined || effect === undefined) {
     return <>{isCurrent ? t("summary.effect.none") : "…"}</>;
   }
-  const signed = (value: number) => number(value, language).replace("-", "−");
   return (
     <>
       {first.title}, {effect.limb}, {effect.contrast}:{" "}
       <strong>
-        {signed(effect.difference)} {first.unit}
+        {decimals(effect.difference, language, 2)} {first.unit}
       </strong>{" "}
       {effect.low !== null &&
         effect.high !== null &&
         t("summary.effect.interval", {
-          low: signed(effect.low),
-          high: signed(effect.high),
+          interval: intervalOf(effect.low, effect.high, language),
           n: effect.n,
         })}
     </>

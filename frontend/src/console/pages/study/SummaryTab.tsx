@@ -180,6 +180,7 @@ function Figures({ study, kind, dashboard }: SummaryProps): JSX.Element {
               studyKey={study.key}
               entry={entry}
               filter={{ ...filterFrom(new URLSearchParams()), kind }}
+              isLazy={false}
             />
           ))}
       </div>
