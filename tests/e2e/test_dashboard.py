@@ -106,7 +106,7 @@ def test_figures_are_filtered_by_the_url_and_saved(
     screenshot(page, "statistics-dark")
     glance = page.get_by_role("region", name="At a glance")
     agency_row = glance.get_by_role("row").filter(has=page.get_by_role("button", name="Agency"))
-    expect(agency_row).to_contain_text("falls, p = .005")
+    expect(agency_row).to_contain_text("p = .005 (falls)")
     agency_row.get_by_role("button").click()
     expect(page.get_by_role("heading", name="Agency", exact=True)).to_be_in_viewport()
     opened = page.locator("details[open]")

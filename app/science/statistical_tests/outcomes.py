@@ -40,11 +40,13 @@ def friedman_outcome(sample: Sample) -> Outcome:
 
 
 def page_outcome(sample: Sample) -> Outcome:
-    """Run Page's trend test, one-sided in the declared direction; raises StatisticsError."""
-    falls = sample.direction == "falls"
-    # `p_given_ties` tests for a rise; a fall is a rise of the reversed order.
-    found = page_trend(sample.values[:, ::-1] if falls else sample.values)
-    p = found.p_given_ties if math.isfinite(found.p_given_ties) else found.p
+    """Run Page's trend test, one-sided in the declared direction; raises StatisticsError.
+
+    L is that of the levels in their own order, whatever the direction, as everywhere else.
+    """
+    found = page_trend(sample.values)
+    p = found.p_falls if sample.direction == "falls" else found.p_rises
+    is_exact = math.isfinite(found.p_given_ties)
     return Outcome(
         n=found.n,
         p=p,
@@ -52,9 +54,10 @@ def page_outcome(sample: Sample) -> Outcome:
         f"n = {found.n}",
         columns=("condition", "median"),
         rows=by_level(sample, np.median(sample.values, axis=0).tolist()),
-        method="Page's trend test; p by permutation of these ranks, ties included."
-        if math.isfinite(found.p_given_ties)
-        else "Page's trend test; asymptotic p.",
+        method=(
+            "Page's trend test, L of the conditions in ascending order; "
+            + ("p by permutation of these ranks, ties included." if is_exact else "asymptotic p.")
+        ),
     )
 
 

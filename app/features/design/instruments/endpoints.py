@@ -18,6 +18,7 @@ from app.features.design.instruments.service import (
     checked_instrument,
     instrument_of,
     save_instrument,
+    taken_version,
     uses,
     versions_of_instrument,
 )
@@ -61,6 +62,16 @@ def post_instrument_check(file: InstrumentFile, db: Reading, _: SignedIn) -> Ins
         loaded = load_instrument(file.yaml)
     except ConfigError as error:
         return InstrumentCheck(ok=False, problems=problem_views(error))
+    taken = taken_version(db, loaded, file.yaml)
+    if taken is not None:
+        problems = problem_views(ConfigError((taken,)))
+        return InstrumentCheck(
+            ok=False,
+            problems=problems,
+            key=loaded.instrument.key,
+            replaces=True,
+            preview=preview_of(loaded.instrument),
+        )
     key = loaded.instrument.key
     stored = db.scalars(
         select(InstrumentVersion.content_hash).where(InstrumentVersion.key == key)

@@ -10,7 +10,13 @@ from sqlalchemy.orm import Session
 from app.errors import NotFound
 from app.models import InstrumentVersion, Study, StudyVersion
 from app.platform.config_problems import StoredFault, invalid_config, stored_fault, unpacking
-from app.protocol import ConfigError, LoadedInstrument, load_instrument, parse_instrument_json
+from app.protocol import (
+    ConfigError,
+    ConfigProblem,
+    LoadedInstrument,
+    load_instrument,
+    parse_instrument_json,
+)
 from app.science.instruments import Instrument
 
 
@@ -81,8 +87,17 @@ def checked_instrument(text: str) -> LoadedInstrument:
         raise invalid_config("instrument", error) from error
 
 
-def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
-    """Store an instrument file as a version, or return the version with the same content."""
+def save_instrument(
+    db: Session, text: str, now: datetime, *, is_released: bool = False
+) -> InstrumentVersion:
+    """Store an instrument file as a version, or return the version with the same content.
+
+    Answers are told apart by the number of the version, so a number stands for one content only.
+    `is_released`: the file comes with Reembody, which may have mended it under the same number.
+
+    Raises:
+        InvalidConfig: the file has problems, or its version is stored with another content.
+    """
     loaded = checked_instrument(text)
     existing = db.scalar(
         select(InstrumentVersion).where(
@@ -92,6 +107,9 @@ def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
     )
     if existing is not None:
         return existing
+    taken = None if is_released else taken_version(db, loaded, text)
+    if taken is not None:
+        raise invalid_config("instrument", ConfigError((taken,)))
     row = InstrumentVersion(
         key=loaded.instrument.key,
         content_hash=loaded.content_hash,
@@ -102,6 +120,29 @@ def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
     db.add(row)
     db.flush()
     return row
+
+
+def taken_version(db: Session, loaded: LoadedInstrument, text: str) -> ConfigProblem | None:
+    """Return the problem if the file's version is stored with another content, else None."""
+    key, number = loaded.instrument.key, loaded.instrument.version
+    rows = db.scalars(select(InstrumentVersion).where(InstrumentVersion.key == key)).all()
+    if any(row.content_hash == loaded.content_hash for row in rows):
+        return None
+    numbers = {instrument_of(row).version for row in rows}
+    if number not in numbers:
+        return None
+    free = max(numbers) + 1
+    lines = text.splitlines()
+    line = next((at for at, one in enumerate(lines, 1) if one.startswith("version:")), 0)
+    return ConfigProblem(
+        path="version",
+        line=line,
+        column=1 if line else 0,
+        message=f"Version {number} of {key} is stored with other content, which never changes.",
+        value=number,
+        valid=f"a number that is not used yet, such as {free}",
+        remedy=f"Write version: {free}.",
+    )
 
 
 def uses(db: Session, seen: ColumnElement[bool]) -> dict[tuple[str, str], list[str]]:

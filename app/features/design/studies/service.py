@@ -214,7 +214,7 @@ def add_shipped(db: Session, now: datetime) -> None:
     """Store the instruments of this release, and its studies if there are none yet."""
     files = shipped_files()
     for path in files.instruments:
-        save_instrument(db, path.read_text(encoding="utf-8"), now)
+        save_instrument(db, path.read_text(encoding="utf-8"), now, is_released=True)
     if db.scalar(select(Study).limit(1)) is None:
         for path in files.studies:
             create_study(db, path.read_text(encoding="utf-8"), now)

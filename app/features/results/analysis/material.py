@@ -6,7 +6,7 @@ page need few of them.
 """
 
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -30,7 +30,7 @@ from app.features.results.analysis.tables import (
     sessions_table,
 )
 from app.features.results.analysis.tables.context import Contexts, phase_limbs, shared_contexts
-from app.models import InstrumentVersion
+from app.models import InstrumentVersion, StudyVersion
 from app.platform.access import hidden_sessions
 from app.protocol import Condition, StudyProtocol
 from app.science.instruments import Instrument
@@ -259,10 +259,12 @@ class _Reader:
         """Return the material with no table read yet; raise NotFound for an unknown study."""
         study = study_by_key(self.db, self.study_key)
         protocol = protocol_of(newest_version(self.db, study))
-        instruments, hidden = _instruments(self.db), hidden_sessions(self.db, study)
+        versions = list(versions_of(self.db, study))
+        instruments = _instruments(self.db, versions)
+        hidden = hidden_sessions(self.db, study)
         conditions = {
             (version.number, one.key): one
-            for version in versions_of(self.db, study)
+            for version in versions
             for one in protocol_of(version).conditions
         }
         return Material(protocol, self.kind, Tables(self._read), instruments, hidden, conditions)
@@ -300,9 +302,20 @@ class MaterialStore:
         return found[2]
 
 
-def _instruments(db: Session) -> dict[tuple[str, int], Instrument]:
-    found = [instrument_of(row) for row in db.scalars(select(InstrumentVersion))]
-    return {(one.key, one.version): one for one in found}
+def _instruments(
+    db: Session, versions: Sequence[StudyVersion]
+) -> dict[tuple[str, int], Instrument]:
+    """Return every instrument by key and version: that of the study, if several have both.
+
+    A release may have mended a file under the same number; older databases may have others.
+    """
+    rows = db.scalars(
+        select(InstrumentVersion).order_by(InstrumentVersion.created_at, InstrumentVersion.id)
+    ).all()
+    own = {place for version in versions for place in version.instruments.items()}
+    found = [instrument_of(row) for row in rows if (row.key, row.content_hash) not in own]
+    asked = [instrument_of(row) for row in rows if (row.key, row.content_hash) in own]
+    return {(one.key, one.version): one for one in (*found, *asked)}
 
 
 def _sessions(sessions: pd.DataFrame, chosen: FigureFilter) -> pd.DataFrame:

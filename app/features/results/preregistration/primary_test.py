@@ -10,7 +10,13 @@ from sqlalchemy.orm import Session
 from app.features.results.analysis.tables import Kind, scores_table
 from app.features.results.preregistration.exclusions import Tables
 from app.features.results.preregistration.schemas import PrimaryResult
-from app.protocol import Preregistration, PrimaryTest, StudyProtocol
+from app.protocol import (
+    Preregistration,
+    PrimaryTest,
+    StudyProtocol,
+    compile_plan,
+    sequences,
+)
 from app.science.statistics import FloatArray
 
 _COLUMNS = {"contact_time": "side_red_s", "completions": "completions"}
@@ -39,7 +45,9 @@ def values_of(
     rows = _rows(db, tables, declared.primary, protocol.key, kind)
     rows = rows[rows["session_id"].isin(session_ids)].dropna(subset=["value"])
     cells = rows.groupby(["participant_code", "limb", "condition"])["value"].mean().reset_index()
-    n_limbs = max(1, cells["limb"].nunique())
+    # Those of the study, not those of the data: who skipped a limb lacks a value.
+    declared_limbs = _limbs_of(protocol, declared.primary)
+    n_limbs = max(1, len(declared_limbs))
     tasks = cells.groupby(["participant_code", "condition"])["value"].agg(["mean", "count"])
     whole = tasks[tasks["count"] == n_limbs]["mean"].reset_index()
     keys = [one.key for one in sorted(protocol.conditions, key=lambda one: one.latency_ms)]
@@ -57,6 +65,19 @@ def values_of(
         people=tuple(complete.index),
         lacking=tuple(lacking),
     )
+
+
+def _limbs_of(protocol: StudyProtocol, primary: PrimaryTest) -> set[str]:
+    """Return the limbs whose values the measure averages in each condition."""
+    plan = compile_plan(protocol, sequences(protocol)[0])
+    asked = {
+        str(step.limb)
+        for step in plan
+        if step.block is not None
+        and step.limb is not None
+        and (step.instrument if primary.measure == "score" else None) == primary.instrument
+    }
+    return asked if primary.limb == "both" else asked & {str(primary.limb)}
 
 
 def _labels(protocol: StudyProtocol) -> dict[str, str]:

@@ -36,12 +36,19 @@ export function EditInstrumentPage({ name }: { readonly name: string }): JSX.Ele
           id={instrument.key}
           title={inLanguage(instrument.title, language)}
           stored={instrument.yaml}
-          begin={instrument.yaml}
+          begin={withVersion(
+            instrument.yaml,
+            Math.max(...instrument.versions.map(({ version }) => version)) + 1,
+          )}
         />
       )}
     </Loaded>
   );
 }
+
+/** The file with the number that its next version has: each number stands for one content. */
+export const withVersion = (yaml: string, version: number): string =>
+  yaml.replace(/^version:.*$/m, `version: ${version}`);
 
 export function NewInstrumentPage(): JSX.Element {
   const { t } = useTexts();

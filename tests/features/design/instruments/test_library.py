@@ -122,3 +122,25 @@ def test_a_stored_study_keeps_its_instruments_wording(fresh_lab: Lab) -> None:
     assert [one["key"] for one in diff["instruments"]] == ["karas2020"]
     repeated = ok(fresh_lab.operator.post("/api/instruments", json={"yaml": changed}))
     assert repeated["stored_versions"] == 2
+
+
+def test_a_number_stands_for_one_wording(fresh_lab: Lab) -> None:
+    """Another wording under a number that is stored is refused at its line, also by the check."""
+    shipped = ok(fresh_lab.operator.get("/api/instruments/ipq"))
+    changed = shipped["yaml"].replace("virtual world", "virtual place", 1)
+    assert changed != shipped["yaml"]
+    refused = error(
+        fresh_lab.operator.post("/api/instruments", json={"yaml": changed}), 422, "invalid_config"
+    )
+    (problem,) = refused["details"]
+    assert (problem["path"], problem["value"]) == ("version", 1)
+    assert changed.splitlines()[problem["line"] - 1] == "version: 1"
+    assert problem["remedy"] == "Write version: 2."
+    check = ok(fresh_lab.operator.post("/api/instruments/check", json={"yaml": changed}))
+    assert (check["ok"], [one["path"] for one in check["problems"]]) == (False, ["version"])
+    assert check["preview"] is not None
+    body = {"yaml": changed.replace("version: 1", "version: 2", 1)}
+    detail = ok(fresh_lab.operator.post("/api/instruments", json=body))
+    assert [one["version"] for one in detail["versions"]] == [1, 2]
+    again = ok(fresh_lab.operator.post("/api/instruments", json={"yaml": shipped["yaml"]}))
+    assert again["stored_versions"] == 2

@@ -1,16 +1,30 @@
 """Tests of the preregistration page: declared tests, actual tests and all deviations."""
 
+import re
 from collections.abc import Iterator
 from datetime import timedelta
 
 import pytest
+from sqlalchemy import delete, select
 
 from app.database import Database, open_database
 from app.features.design.studies import add_version, freeze, newest_version, study_by_key
+from app.features.results.analysis.material import read_material
+from app.features.results.analysis.questions.answers import answers_of
+from app.features.results.analysis.tables import phases_table
 from app.features.results.preregistration.markdown import as_markdown, without_codes
 from app.features.results.preregistration.schemas import PreregistrationView
 from app.features.results.preregistration.service import preregistration_of
-from app.models import StudySession
+from app.models import (
+    Answer,
+    Completion,
+    Contact,
+    Erasure,
+    Participant,
+    ScoreValue,
+    StudySession,
+    Submission,
+)
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
 from tests.protocol.helpers import STUDY as FILE
 from tests.protocol.test_preregistration import SECTION
@@ -40,6 +54,27 @@ def visit(database: Database, code: str, status: str = "completed") -> None:
     with database.writing() as db:
         session: StudySession = build_session(db, SessionSpec(code=code, status=status))
         freeze(newest_version(db, study_by_key(db, STUDY)), session.created_at)
+
+
+def forget(database: Database, code: str) -> None:
+    """Erase what a participant did, as an erasure leaves it: the session and its phases remain."""
+    with database.writing() as db:
+        person = db.scalars(select(Participant).where(Participant.code == code)).one()
+        session = db.scalars(
+            select(StudySession).where(StudySession.participant_id == person.id)
+        ).one()
+        submissions = select(Submission.id).where(Submission.session_id == session.id)
+        for rows in (Answer, ScoreValue):
+            db.execute(delete(rows).where(rows.submission_id.in_(submissions)))
+        for table in (Completion, Contact, Submission):
+            db.execute(delete(table).where(table.session_id == session.id))
+        tombstone = {"sessions": [session.id], "removed": {}, "remaining": []}
+        db.add(
+            Erasure(
+                study_id=session.study_id, participant_id=person.id, by="account:admin", at=NOW,
+                **tombstone,
+            )
+        )  # fmt: skip
 
 
 def view_of(database: Database) -> PreregistrationView:
@@ -125,3 +160,65 @@ def test_the_registrys_copy_names_no_participant(database: Database) -> None:
     assert "excluded 1: complete_session" in text
     for word in ("## Declared", "## Done", "## Deviations", "SHA-256"):
         assert word in text
+
+
+def test_an_erased_person_is_in_no_test_and_no_mean(database: Database) -> None:
+    """What is left of an erased session is not valid, and its counts are missing, not zero."""
+    measure = SECTION.replace(
+        "{measure: score, instrument: karas2020, score: agency, limb: hand,",
+        "{measure: completions, limb: hand,",
+    )
+    declare(database, measure)
+    for n in range(1, 5):
+        visit(database, f"P{n}")
+    forget(database, "P4")
+    view = view_of(database)
+    assert (view.sessions, view.included) == (4, 3)
+    assert view.result is not None
+    assert view.result.n == 3
+    assert [(one.participant_code, one.reason) for one in view.excluded] == [
+        ("P4", "the participant’s data were erased")
+    ]
+    with database.reading() as db:
+        phases = phases_table(db, STUDY, "people")
+        found = answers_of(read_material(db, STUDY, "people"))
+    left = phases[phases["participant_code"] == "P4"]
+    assert not left["valid"].any()
+    counts = left[["completions", "side_contacts", "side_red_s"]]
+    assert counts.isna().to_numpy().all()
+    assert phases[phases["participant_code"] == "P3"]["completions"].notna().all()
+    assert {one.n for one in found.measures} == {3}
+    assert (found.n_completed, found.n_not_valid) == (4, 1)
+
+
+@pytest.mark.one_engine
+def test_the_statistics_page_has_the_same_l_as_the_declared_test(database: Database) -> None:
+    """Page's L is that of ascending latencies on both pages, whatever direction was declared."""
+    declare(database, SECTION)
+    for n in range(1, 7):
+        visit(database, f"P{n}")
+    result = view_of(database).result
+    assert result is not None
+    with database.reading() as db:
+        found = answers_of(read_material(db, STUDY, "people"))
+    (agency,) = (one for one in found.measures if one.key == "karas2020_agency")
+    (trend,) = (one for one in agency.results if one.key == "trend_hand")
+    declared_l, page_l = (
+        float(re.findall(r"L = ([0-9.]+)", text)[0]) for text in (result.sentence, trend.apa)
+    )
+    assert declared_l == page_l
+
+
+@pytest.mark.one_engine
+def test_a_limb_that_nobody_used_is_not_left_out_silently(database: Database) -> None:
+    """Where the mean of hand and foot was declared, nobody without a foot task is tested."""
+    declare(database, SECTION.replace("limb: hand", "limb: both"))
+    skipped = tuple(
+        f"block{block}.{step}" for block in (1, 2, 3) for step in ("foot", "foot.karas2020")
+    )
+    for n in range(1, 5):
+        with database.writing() as db:
+            build_session(db, SessionSpec(code=f"P{n}", skipped=skipped))
+    view = view_of(database)
+    assert view.result is None
+    assert view.why_no_result

@@ -89,8 +89,16 @@ PHASES: tuple[Column, ...] = (
     _P.number("active_s", "Active time: pauses and walk-backs do not count.", "s", "0 and up"),
     _P.integer("paused_count", "How often it was paused.", levels="0 and up"),
     _P.integer("walk_back_count", "How often the participant walked back.", levels="0 and up"),
-    _P.integer("completions", "Completed tasks.", levels="0 and up"),
-    _P.integer("side_contacts", "How often a side of a box turned red.", levels="0 and up"),
+    _P.integer(
+        "completions",
+        "Completed tasks; empty once the participant's data were erased.",
+        levels="0 and up",
+    ),
+    _P.integer(
+        "side_contacts",
+        "How often a side of a box turned red; empty once the data were erased.",
+        levels="0 and up",
+    ),
     _P.number(
         "side_red_s",
         "Time that sides of boxes were red: for each side the union over the body parts that "

@@ -167,7 +167,7 @@ def _two_sided_trend(data: LimbData, found: PageTrend) -> TestReport:
         source=PAGE.source,
         warnings=(error_rate_warning("page_given_ties"),),
         exploratory=True,
-        brief=Brief(p_words(p), way if p <= data.alpha else None),
+        brief=Brief(p_words(p), way),
     )
 
 
@@ -208,7 +208,7 @@ def _predicted_trend(data: LimbData, found: DirectionalHypothesis) -> TestReport
         ),
         source=f"{PAGE.source} {WILCOXON.source} Direction: Waltemate et al. 2016.",
         warnings=(signed_floor(found.against_first), error_rate_warning("page_given_ties")),
-        brief=Brief(p_words(found.p), _direction(found.trend) if found.supported else None),
+        brief=Brief(p_words(found.p), _direction(found.trend)),
     )
 
 

@@ -30,7 +30,7 @@ NONE = "–"
 
 @dataclass(frozen=True)
 class Brief:
-    """A result short enough for a table cell; `way`: the direction of a trend that was shown."""
+    """A result short enough for a table cell; `way`: the direction of a trend as observed."""
 
     text: str
     way: Direction | None = None

@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies import protocol_of, study_by_key, versions_of
 from app.features.record.doubts import doubts_of_sessions
-from app.features.record.sessions import plans_of, state_of
+from app.features.record.sessions import not_erased, plans_of, state_of
 from app.features.results.analysis.codebook import ColumnType, columns_of
 from app.features.results.analysis.schemas import Kind
 from app.models import Participant, Phase, Study, StudySession, StudyVersion
@@ -123,6 +123,7 @@ def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
             StudySession.id,
             StudySession.status,
             StudySession.shortfalls,
+            ~not_erased(StudySession.id),
         )
         .join(StudyVersion, StudyVersion.id == StudySession.study_version_id)
         .join(Participant, Participant.id == StudySession.participant_id)
@@ -130,7 +131,7 @@ def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
         .order_by(StudySession.created_at, StudySession.id)
     )
     names = ("study_version", "kind", "avatar", "participant_code", "session_id", "session_status")
-    frame = read(db, query, (*names, "shortfalls"))
+    frame = read(db, query, (*names, "shortfalls", "erased"))
     frame["session_counts"] = _counts(frame) & ~frame["session_id"].isin(
         doubted_sessions(db, study_key, kind)
     )
@@ -140,8 +141,14 @@ def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def _counts(sessions: pd.DataFrame) -> "pd.Series[Any]":
-    """Return whether each session counts: it was not broken off and meets all requirements."""
-    lacking = [bool(found) for found in sessions["shortfalls"]]
+    """Return whether each session counts: it was not broken off and meets all requirements.
+
+    Nor have its data been erased: what is left of it, such as its phases, says nothing.
+    """
+    lacking = [
+        bool(found) or bool(erased)
+        for found, erased in zip(sessions["shortfalls"], sessions["erased"], strict=True)
+    ]
     return ~(sessions["session_status"].isin(BROKEN_OFF) | pd.Series(lacking, sessions.index))
 
 

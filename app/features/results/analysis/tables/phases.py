@@ -50,7 +50,11 @@ def phases_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     for more in (_details, _completions, _red, _latencies, added_latencies, _avatar_changes):
         frame = frame.merge(more(db, study, kind), on=_KEYS, how="left")
     for name in ("completions", "side_contacts", "side_red_s"):
-        frame[name] = [0 if pd.isna(value) else value for value in frame[name]]
+        # No row means none happened, but of an erased person nobody knows any more.
+        frame[name] = [
+            (None if erased else 0) if pd.isna(value) else value
+            for value, erased in zip(frame[name], frame["erased"], strict=True)
+        ]
     return finished(frame, "phases")
 
 

@@ -32,6 +32,7 @@ from app.models import (
 )
 
 IN_DOUBT = "what the headset said cannot be true (doubts.csv)"
+ERASED = "the participant’s data were erased"
 
 
 def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
@@ -51,9 +52,15 @@ def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     frame["reasons_not_valid"] = [
         f"session {status}"
         if status in BROKEN_OFF
+        else ERASED
+        if erased
         else _reasons(found, IN_DOUBT if own in doubted else None)
-        for status, found, own in zip(
-            frame["status"], frame["shortfalls"], frame["session_id"], strict=True
+        for status, erased, found, own in zip(
+            frame["status"],
+            frame["erased"],
+            frame["shortfalls"],
+            frame["session_id"],
+            strict=True,
         )
     ]
     return finished(frame, "sessions")

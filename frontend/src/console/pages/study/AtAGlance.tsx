@@ -196,7 +196,7 @@ export function intervalOf(low: number, high: number, language: string): string 
 
 function trendOf({ trend, way }: Glance, t: (key: Key) => string): string {
   if (trend === null) return t("glance.untested");
-  return way === null ? trend : `${t(`glance.${way}`)}, ${trend}`;
+  return way === null ? trend : `${trend} (${t(`glance.${way}`)})`;
 }
 
 function taskName(line: Glance, t: (key: Key) => string): string {
