@@ -17,10 +17,10 @@ SESSIONS: tuple[Column, ...] = (
     *session_columns("sessions"),
     _S.valid(
         "False if the session was aborted or withdrawn, was completed without what the study's "
-        "valid_when asks for, or if its headset said what cannot be true of more than one phase "
-        "(doubts.csv). A session that still runs is not judged yet.",
-        "False if the session was aborted or withdrawn, or if its headset said what cannot be true "
-        "of more than one phase (doubts.csv).",
+        "valid_when asks for, if its data were erased, or if its headset said what cannot be true "
+        "of more than one phase (doubts.csv). A session that still runs is not judged yet.",
+        "False if the session was aborted or withdrawn, if its data were erased, or if its headset "
+        "said what cannot be true of more than one phase (doubts.csv).",
     ),
     replace(
         _S.text(

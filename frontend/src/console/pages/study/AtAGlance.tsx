@@ -174,7 +174,12 @@ function EffectMark({
 function SampleSize({ effect }: { readonly effect: Effect | undefined }): JSX.Element | null {
   const { t } = useTexts();
   if (effect === undefined) return null;
-  return <span className={classes.unit}>{` · ${t("glance.n", { n: effect.n })}`}</span>;
+  return (
+    <>
+      {" "}
+      <span className={classes.unit}>{t("glance.n", { n: effect.n })}</span>
+    </>
+  );
 }
 
 /** The effect in standard deviations, as a number beside its mark. */

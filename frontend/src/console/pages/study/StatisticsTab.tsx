@@ -2,6 +2,7 @@
 import { Button, Title } from "@mantine/core";
 import type { Measure, Statistics } from "@shared/api/analysis";
 import type { StudyDetail } from "@shared/api/types";
+import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
@@ -39,8 +40,8 @@ export function StatisticsTab({ study }: { readonly study: StudyDetail }): JSX.E
 }
 
 function Answers({ found }: { readonly found: Statistics }): JSX.Element {
-  const { t } = useTexts();
-  const alpha = found.alpha.toString();
+  const { t, language } = useTexts();
+  const alpha = number(found.alpha, language, 4);
   useOpenInPrint();
   useOpenFromAddress();
   return (
