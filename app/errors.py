@@ -10,6 +10,7 @@ ReembodyError                     a request was refused; has value, valid and re
 │   ├── RecordedConflict      409     the same, and the refused input is stored in the record
 │   ├── StaleVersion      409     the session has changed since the caller read it
 │   ├── NotNow            409     not possible in the session's current step or status
+│   ├── OtherAccount      409     the page shows another account than the signed-in one
 │   └── TakenOver         409     a newer connection of the same headset has taken over
 ├── Gone                  410     a pairing code was used or has expired
 │   └── Withdrawn         410     the participant has withdrawn: no more of their data are stored
@@ -125,6 +126,12 @@ class NotNow(Conflict):
     """The request is not possible in the session's current step or status."""
 
     code = "not_now"
+
+
+class OtherAccount(Conflict):
+    """The request comes from a page that shows another account than the one signed in now."""
+
+    code = "other_account"
 
 
 class TakenOver(Conflict):

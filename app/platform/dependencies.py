@@ -12,7 +12,7 @@ from fastapi import Depends, Request
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
-from app.errors import NotAllowed, NotSignedIn, RecordedConflict
+from app.errors import NotAllowed, NotSignedIn, OtherAccount, RecordedConflict
 from app.models import Device
 from app.platform.access import Caller, caller_of, require_object
 from app.platform.admission import LOGIN_COOKIE, TABLET_COOKIE, bearer_token
@@ -21,6 +21,12 @@ from app.platform.policy import HEADSET, TABLET, allowed
 from app.platform.tokens import account_of_token, device_of_token, read_cookie
 
 API_PREFIX = "/api"
+ACCOUNT_HEADER = "x-reembody-account"
+"""The request header in which a page names the account it shows.
+
+All tabs of a browser share one cookie, so that a page may be open under another account than the
+one that the cookie belongs to by now.
+"""
 Result = TypeVar("Result")
 
 
@@ -113,12 +119,23 @@ def authorised_caller(request: HTTPConnection, context: AppContext, method: str)
 
 
 def signed_in_caller(request: HTTPConnection, context: Context) -> Caller:
-    """Return the signed-in person, whatever the route; raise NotSignedIn if there is none."""
+    """Return the signed-in person, whatever the route.
+
+    Raises NotSignedIn if there is none, and OtherAccount if the page that sent the request shows
+    somebody else: it must neither show what this person may see nor act in their name.
+    """
     token = bearer_token(request) or read_cookie(request, LOGIN_COOKIE)
     if not token:
         raise NotSignedIn("you are not signed in", remedy="Sign in first.")
     with context.database.reading() as db:
-        return caller_of(account_of_token(db, token, context.clock.utc_now()))
+        caller = caller_of(account_of_token(db, token, context.clock.utc_now()))
+    if request.headers.get(ACCOUNT_HEADER, caller.account_id) != caller.account_id:
+        raise OtherAccount(
+            "another account has signed in in this browser since this page was opened",
+            value=caller.username,
+            remedy="Reload the page.",
+        )
+    return caller
 
 
 def get_tablet(request: Request, context: Context) -> Device:

@@ -88,6 +88,34 @@ def test_ending_a_login_asks_its_open_page_to_sign_in(
     expect(operator.get_by_text("Live", exact=True)).to_be_visible(timeout=PATIENCE_MS)
 
 
+def test_another_account_in_a_second_tab_leaves_nothing_in_the_first(
+    lab: BlindedLab, page_factory: Pages, page_watch: PageWatch
+) -> None:
+    """When another account signs in in a second tab, the first one shows that account at once.
+
+    What it was not told of, it learns by its next request.
+    """
+    page_watch.allow(r"status of (401|409)")
+    operator = page_factory()
+    make_account(operator, lab.invitation("operator"), "first-tab")
+    operator.goto(f"{lab.server.url}/#/studies/{STUDY}")
+    expect(operator.get_by_text("This study is blinded for you")).to_be_visible()
+    admin = operator.context.new_page()
+    admin.goto(lab.server.url)
+    admin.get_by_role("button", name="first-tab", exact=True).click()
+    admin.get_by_role("menuitem", name="Sign out").click()
+    expect(operator.get_by_label("User name")).to_be_visible()
+    Experimenter(admin, lab.server.url).log_in()
+    expect(operator.get_by_role("button", name="admin", exact=True)).to_be_visible()
+    expect(operator.get_by_role("link", name="Dashboard")).to_be_visible()
+    # As if the first tab had slept.
+    wish = {"username": "first-tab", "password": PASSWORD}
+    assert operator.context.request.post(f"{lab.server.url}/api/login", data=wish).ok
+    operator.get_by_role("link", name="Ledger").click()
+    expect(operator.get_by_role("button", name="first-tab", exact=True)).to_be_visible()
+    expect(operator.get_by_role("link", name="Dashboard")).to_have_count(0)
+
+
 def test_showing_a_condition_needs_a_reason_and_is_logged(lab: BlindedLab, admin: Page) -> None:
     """An admin sees a blinded order only after giving a reason, which the event log records."""
     admin.goto(lab.session("P-SHOWN"))

@@ -2,19 +2,28 @@
  * The console: the sign-in page, or the frame with the page that the address names.
  *
  * When a sign-in expires, the page it was used on is hidden rather than discarded: the same person
- * can continue what they were writing, anybody else starts with a fresh page.
+ * can continue what they were writing, anybody else starts with a fresh page. So do all tabs when
+ * another account signs in in one of them.
  */
 import { Center, Loader } from "@mantine/core";
 import type { Account } from "@shared/api/types";
 import { Boundary } from "@shared/ui/Boundary";
+import { useQueryClient } from "@tanstack/react-query";
 import { Activity, type JSX, Suspense, useEffect } from "react";
 import { Router, useLocation } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
-import { useAccount, useExpiredAccount, useExpiryDetection, useSignInChecks } from "./account";
+import {
+  useAccount,
+  useExpiredAccount,
+  useExpiryDetection,
+  useSignInChecks,
+  useSignInElsewhere,
+} from "./account";
 import { Failure } from "./errors";
 import { Frame } from "./frame/Frame";
 import { useHelpKey } from "./help/useHelpKey";
 import { useTexts } from "./i18n";
+import { useAccountChanged } from "./otherTabs";
 import { JoinPage } from "./pages/join/JoinPage";
 import { Login } from "./pages/Login";
 import { may } from "./permissions";
@@ -25,11 +34,26 @@ import { TryoutBar } from "./tour/TryoutBar";
 const INVITATION = /^\/join\/(.+)$/;
 
 export function Console(): JSX.Element {
+  // The page is taken down before it is loaded again, so that nothing on it asks whether to leave.
+  return useAccountChanged() ? <Reload /> : <ConsoleOfAccount />;
+}
+
+function Reload(): JSX.Element {
+  const queries = useQueryClient();
+  useEffect(() => {
+    queries.clear();
+    window.location.reload();
+  }, [queries]);
+  return <Waiting />;
+}
+
+function ConsoleOfAccount(): JSX.Element {
   const account = useAccount();
   const ended = useExpiredAccount();
   const [address] = useHashLocation();
   const token = INVITATION.exec(address)?.[1];
   useOpenDialogsHidden(account.data === null);
+  useSignInElsewhere();
   // Cached data stay on the page while the server does not answer.
   if (account.data === undefined) {
     return (

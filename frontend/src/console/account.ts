@@ -1,9 +1,10 @@
 /** The signed-in account. The cookie is the server's; this page only queries whose it is. */
 import { accounts } from "@shared/api/endpoints";
-import { isUnauthorised } from "@shared/api/request";
+import { isUnauthorised, setAccountOfPage } from "@shared/api/request";
 import type { Account } from "@shared/api/types";
 import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect } from "react";
+import { onSameAccount, tellOtherTabs } from "./otherTabs";
 
 const KEY = ["account"] as const;
 /** The account whose sign-in expired while the page was in use, and whose page is kept for it. */
@@ -16,6 +17,7 @@ export function useAccount() {
     queryFn: async ({ client }) => {
       const { account } = await accounts.me();
       if (account === null) keepExpired(client);
+      else setAccountOfPage(account.id);
       return account;
     },
     staleTime: 60_000,
@@ -45,6 +47,8 @@ export async function signIn(queries: QueryClient, username: string, password: s
 export function startSession(queries: QueryClient, account: Account): void {
   const before = queries.getQueryData<Account | null>(EXPIRED);
   if (before?.id !== account.id) forget(queries);
+  setAccountOfPage(account.id);
+  tellOtherTabs(account.id);
   queries.setQueryData(EXPIRED, null);
   queries.setQueryData(KEY, account);
   // The same person continues where they were; the data may have changed meanwhile.
@@ -55,6 +59,8 @@ export function startSession(queries: QueryClient, account: Account): void {
 export async function signOut(queries: QueryClient) {
   await accounts.logout().catch(() => undefined);
   forget(queries);
+  setAccountOfPage(null);
+  tellOtherTabs(null);
   queries.setQueryData(EXPIRED, null);
   queries.setQueryData(KEY, null);
 }
@@ -74,6 +80,15 @@ function forget(queries: QueryClient): void {
 export async function checkSignIn(queries: QueryClient): Promise<void> {
   const who = await accounts.me().catch(() => undefined);
   if (who?.account === null) expire(queries);
+}
+
+/** Continue at once if the same person has signed in again in another tab. */
+export function useSignInElsewhere(): void {
+  const queries = useQueryClient();
+  useEffect(
+    () => onSameAccount(() => void queries.invalidateQueries({ queryKey: KEY, exact: true })),
+    [queries],
+  );
 }
 
 /** Show the sign-in page again as soon as any request fails because nobody is signed in. */

@@ -1,6 +1,6 @@
 /** Requests for bodies: humanoid models by the hash of their content. */
 import type { BodyBinding } from "../stage/skin/pose";
-import { answer, errorFromBody, server, Unreachable } from "./request";
+import { accountHeader, answer, errorFromBody, server, Unreachable } from "./request";
 import type { components } from "./schema";
 import { upload } from "./upload";
 
@@ -14,7 +14,10 @@ export type BodyChange = Schemas["BodyChange"];
 export type LicenceTerm = BodyView["asked"][number];
 
 const fetched = async (path: string): Promise<Response> => {
-  const response = await fetch(path, { credentials: "same-origin" }).catch((cause: unknown) => {
+  const response = await fetch(path, {
+    credentials: "same-origin",
+    headers: accountHeader(),
+  }).catch((cause: unknown) => {
     throw new Unreachable("The server cannot be reached.", { cause });
   });
   if (!response.ok) throw errorFromBody(response.status, await response.json().catch(() => null));

@@ -1,6 +1,6 @@
 /** Requests for motion captures and their retargeting to avatars. */
 import { decodeMotion, type PointMotion } from "../stage/motion";
-import { answer, errorFromBody, server, Unreachable } from "./request";
+import { accountHeader, answer, errorFromBody, server, Unreachable } from "./request";
 import type { components, operations } from "./schema";
 import { upload } from "./upload";
 
@@ -87,9 +87,11 @@ export const captures = {
 const path = (id: string): string => `/api/captures/${encodeURIComponent(id)}`;
 
 async function motionFrom(url: string): Promise<PointMotion> {
-  const response = await fetch(url, { credentials: "same-origin" }).catch((cause: unknown) => {
-    throw new Unreachable("The server cannot be reached.", { cause });
-  });
+  const response = await fetch(url, { credentials: "same-origin", headers: accountHeader() }).catch(
+    (cause: unknown) => {
+      throw new Unreachable("The server cannot be reached.", { cause });
+    },
+  );
   if (!response.ok) throw errorFromBody(response.status, await response.json().catch(() => null));
   return decodeMotion(await response.arrayBuffer());
 }

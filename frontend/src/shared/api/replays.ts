@@ -1,6 +1,6 @@
 /** Requests for the replay of a phase: its events and its movement. */
 import { MotionError, type PointMotion, splitMovement } from "../stage/motion";
-import { answer, errorFromBody, server, Unreachable } from "./request";
+import { accountHeader, answer, errorFromBody, server, Unreachable } from "./request";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];
@@ -54,7 +54,10 @@ export const replays = {
   movement: async (id: string, phase: number, rotations: boolean): Promise<ReplayMovement> => {
     const query = rotations ? "?rotations=true" : "";
     const url = `/api/sessions/${encodeURIComponent(id)}/phases/${phase}/movement${query}`;
-    const response = await fetch(url, { credentials: "same-origin" }).catch((cause: unknown) => {
+    const response = await fetch(url, {
+      credentials: "same-origin",
+      headers: accountHeader(),
+    }).catch((cause: unknown) => {
       throw new Unreachable("The server cannot be reached.", { cause });
     });
     if (!response.ok) throw errorFromBody(response.status, await response.json().catch(() => null));

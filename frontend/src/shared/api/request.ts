@@ -7,6 +7,35 @@ import type { paths } from "./schema";
 
 export const server = createClient<paths>({ credentials: "same-origin" });
 
+// All tabs of a browser share one cookie: if somebody else signs in in another tab, it answers this
+// one, too. So each request names the account that the page shows, and the server refuses others.
+server.use({
+  onRequest({ request }) {
+    for (const [name, value] of Object.entries(accountHeader())) request.headers.set(name, value);
+  },
+});
+
+const accountListeners = new Set<() => void>();
+let pageAccount: string | null = null;
+
+/** The id of the account that this page shows; null if nobody has signed in on it. */
+export const accountOfPage = (): string | null => pageAccount;
+
+/** Set the account that this page shows: only answers to this account are for it. */
+export function setAccountOfPage(id: string | null): void {
+  pageAccount = id;
+}
+
+/** The header that a request made without `server` has to have, too. */
+export const accountHeader = (): Readonly<Record<string, string>> =>
+  pageAccount === null ? {} : { "x-reembody-account": pageAccount };
+
+/** Hear when the server refuses a request since another account has signed in in this browser. */
+export function onOtherAccount(listener: () => void): () => void {
+  accountListeners.add(listener);
+  return () => accountListeners.delete(listener);
+}
+
 interface Outcome {
   readonly data?: unknown;
   readonly error?: unknown;
@@ -76,9 +105,13 @@ export class Unreachable extends Error {
   override readonly name = "Unreachable";
 }
 
-/** The error in a response body, or a generic one if a proxy or a crash answered instead. */
+/**
+ * The error in a response body, or a generic one if a proxy or a crash answered instead. Tells the
+ * listeners of `onOtherAccount` if it is theirs.
+ */
 export function errorFromBody(status: number, body: unknown): ApiError {
   const error = (body as { error?: Partial<ErrorBody> } | null)?.error;
+  if (error?.code === "other_account") for (const listener of accountListeners) listener();
   if (typeof error?.code === "string" && typeof error.message === "string") {
     return new ApiError(status, error as ErrorBody);
   }

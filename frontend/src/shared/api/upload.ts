@@ -1,5 +1,5 @@
 /** Upload a file and follow how much of it was sent. */
-import { errorFromBody, Unreachable } from "./request";
+import { accountHeader, errorFromBody, Unreachable } from "./request";
 
 export interface Stored<Answer> {
   readonly stored: Answer;
@@ -21,6 +21,9 @@ export function upload<Answer>(
     const request = new XMLHttpRequest();
     request.open("POST", url);
     request.responseType = "json";
+    for (const [name, value] of Object.entries(accountHeader())) {
+      request.setRequestHeader(name, value);
+    }
     request.upload.onprogress = (event) => {
       if (event.lengthComputable) onSent(event.loaded / event.total);
     };

@@ -1,5 +1,5 @@
 /** Requests for walking: scenes, sets of walks, models and their predictions. */
-import { answer, errorFromBody, server, Unreachable } from "./request";
+import { accountHeader, answer, errorFromBody, server, Unreachable } from "./request";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];
@@ -103,7 +103,7 @@ async function addTable(table: Table): Promise<WalkSet> {
   const response = await fetch(`/api/walking/walk-sets/tracks?${query}`, {
     method: "POST",
     credentials: "same-origin",
-    headers: { "content-type": "application/octet-stream" },
+    headers: { "content-type": "application/octet-stream", ...accountHeader() },
     body: table.file,
   }).catch((cause: unknown) => {
     throw new Unreachable("The server cannot be reached.", { cause });

@@ -69,6 +69,27 @@ def test_logging_out_revokes_the_token_immediately(lab: Lab) -> None:
     error(client.get("/api/studies"), 401, "not_signed_in")
 
 
+def test_a_page_of_another_account_is_answered_nothing(lab: Lab) -> None:
+    """A request of a page that shows another account than the cookie's is refused, not carried out.
+
+    Nor is it told who else is signed in, as if it were that account's page.
+    """
+    client = lab.stranger()
+    own = ok(log_in(client))["account"]["id"]
+    sessions = "/api/studies/reembodiment-latency/sessions"
+    before = ok(client.get(sessions))
+    assert ok(client.get("/api/me", headers={"x-reembody-account": own}))["account"]["id"] == own
+    other = {"x-reembody-account": "0" * 32}
+    for answer in (
+        client.get("/api/me", headers=other),
+        client.get("/api/studies", headers=other),
+        client.post(sessions, json={}, headers=other),
+    ):
+        refusal = error(answer, 409, "other_account")
+        assert refusal["remedy"] == "Reload the page."
+    assert ok(client.get(sessions)) == before
+
+
 @pytest.mark.one_engine
 def test_a_bearer_token_can_be_logged_out(lab: Lab) -> None:
     """Logging out with a bearer token revokes that token."""

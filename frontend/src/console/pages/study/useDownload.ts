@@ -1,5 +1,5 @@
 /** A download that shows its progress and can be cancelled. */
-import { errorFromBody, Unreachable } from "@shared/api/request";
+import { accountHeader, errorFromBody, Unreachable } from "@shared/api/request";
 import { saveFile } from "@shared/saveFile";
 import { useRef, useState } from "react";
 
@@ -40,9 +40,11 @@ async function receive(
   signal: AbortSignal,
   onProgress: (received: number, total: number | null) => void,
 ): Promise<Blob> {
-  const response = await fetch(url, { signal }).catch((cause: unknown) => {
-    throw new Unreachable("The server cannot be reached.", { cause });
-  });
+  const response = await fetch(url, { signal, headers: accountHeader() }).catch(
+    (cause: unknown) => {
+      throw new Unreachable("The server cannot be reached.", { cause });
+    },
+  );
   if (!response.ok) throw errorFromBody(response.status, await response.json().catch(() => null));
   const length = response.headers.get("content-length");
   const total = length === null ? null : Number(length);
