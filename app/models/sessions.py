@@ -23,8 +23,10 @@ class StudySession(Base):
     """One visit of one participant. `version` counts events; `snapshot` is the state after them.
 
     `avatar_configuration_hash` identifies the content of the avatar's configuration, if the avatar
-    has one (AvatarVersion). `shortfalls`: the rules of its study that a completed session does not
-    satisfy, an empty list if none; null if there are no rules, or it was not checked yet.
+    has one (AvatarVersion). `request_id`: chosen by the client that asked for the session, so that
+    asking again makes no second one; null if it chose none. `shortfalls`: the rules of its study
+    that a completed session does not satisfy, an empty list if none; null if there are no rules, or
+    it was not checked yet.
     """
 
     __tablename__ = "sessions"
@@ -47,6 +49,7 @@ class StudySession(Base):
     version: Mapped[int] = mapped_column(default=0)
     snapshot: Mapped[dict[str, Any]] = mapped_column(JSON)
     shortfalls: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON(none_as_null=True))
+    request_id: Mapped[str | None] = mapped_column(String(36), index=True, unique=True)
     created_at: Mapped[UtcTime]
     started_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
     ended_at: Mapped[datetime | None] = mapped_column(UtcDateTime)

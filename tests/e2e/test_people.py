@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Iterator
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.e2e.lab_people import (
     PASSWORD,
@@ -128,6 +128,44 @@ def test_showing_a_condition_needs_a_reason_and_is_logged(lab: BlindedLab, admin
     expect(admin.get_by_text("Order hidden (blinded)")).to_have_count(0)
     admin.get_by_role("button", name="Log").click()
     expect(admin.get_by_text("condition shown to the lab")).to_be_visible()
+
+
+def test_two_clicks_or_a_lost_answer_make_one_session_and_one_link(
+    lab: BlindedLab, admin: Page, page_watch: PageWatch
+) -> None:
+    """A form that is sent twice before the page is drawn, or again after a lost answer, acts once.
+
+    So there is one session, and one invitation.
+    """
+    page_watch.allow(r"Failed to load resource")
+    twice = "(button) => { button.click(); button.click(); }"
+    sessions = f"/api/studies/{STUDY}/sessions"
+    before = len(lab.admin.get(sessions).json())
+    admin.goto(f"{lab.server.url}/#/studies/{STUDY}")
+    answers: list[int] = []
+
+    def lose_the_first(route: Route) -> None:
+        if route.request.method != "POST" or answers:
+            route.fallback()
+            return
+        answers.append(route.fetch().status)
+        route.abort()
+
+    admin.route(f"**{sessions}", lose_the_first)
+    admin.get_by_role("button", name="New session").first.click()
+    create = admin.get_by_role("button", name="Create session")
+    create.evaluate(twice)
+    expect(admin.get_by_text("Nothing on the server is lost")).to_be_visible()
+    assert answers == [201]
+    create.evaluate(twice)
+    expect(admin.get_by_role("heading", name="Before the start")).to_be_visible()
+    assert len(lab.admin.get(sessions).json()) == before + 1
+    links = len(lab.admin.get("/api/invitations").json())
+    admin.goto(f"{lab.server.url}/#/people")
+    admin.get_by_role("button", name="Invite someone").click()
+    admin.get_by_role("button", name="Create link").evaluate(twice)
+    expect(admin.get_by_label("Link", exact=True)).to_be_visible()
+    assert len(lab.admin.get("/api/invitations").json()) == links + 1
 
 
 def test_an_invalid_invitation_link_says_why(

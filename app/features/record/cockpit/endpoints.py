@@ -54,7 +54,10 @@ _LISTED = TypeAdapter(list[ListedSession])
 def create_session(
     key: str, request: NewSession, db: Writing, context: Context, caller: SignedIn
 ) -> SessionView:
-    """Create a session of a study, which takes the next slot of the ledger."""
+    """Create a session of a study, which takes the next slot of the ledger.
+
+    A repeated `request_id` returns the session that the first request created.
+    """
     session = join(
         db,
         context,
@@ -63,6 +66,7 @@ def create_session(
         kind=request.kind,
         language=request.language,
         time_scale=request.time_scale,
+        request_id=request.request_id,
     )
     return session_view(db, context, session, caller)
 

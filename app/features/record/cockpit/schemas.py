@@ -50,9 +50,14 @@ AllowedType = CommandType | Literal["enter_answers"]
 
 
 class NewSession(BaseModel):
-    """A request to create a session of a study."""
+    """A request to create a session of a study.
+
+    A repeated `request_id` creates no second session.
+    """
 
     model_config = ConfigDict(extra="forbid")
+
+    request_id: str | None = Field(default=None, min_length=8, max_length=36)
 
     participant_code: str | None = None
     kind: Kind = "people"

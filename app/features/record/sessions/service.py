@@ -4,13 +4,14 @@ import secrets
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from functools import lru_cache, partial, reduce
+from typing import NamedTuple
 
 from sqlalchemy import ColumnElement, select
 from sqlalchemy.exc import NoResultFound
 from sqlalchemy.orm import Session
 
 from app.database import referenced_row
-from app.errors import InvalidInput, NotNow, StaleVersion
+from app.errors import Conflict, InvalidInput, NotNow, StaleVersion
 from app.features.design.studies import (
     newest_version,
     protocol_of,
@@ -38,8 +39,10 @@ from app.features.record.sessions.validity import settle_validity
 from app.models import (
     KINDS,
     LedgerSlot,
+    Participant,
     SessionEvent,
     SlotAttempt,
+    Study,
     StudySession,
     StudyVersion,
     new_id,
@@ -185,14 +188,19 @@ def join(
     kind: str,
     language: str,
     time_scale: float = 1.0,
+    request_id: str | None = None,
 ) -> StudySession:
-    """Create a session on the next slot of the ledger.
+    """Create a session on the next slot of the ledger, or return that of a repeated `request_id`.
 
     `time_scale` is how many seconds of the client's clock pass per real second; only simulated
     sessions may set it. Raises InvalidInput, NotFound, Conflict or NotDurable.
     """
     context.storage.require_storage()
     study = study_by_key(db, study_key)
+    wish = _Wish(request_id, participant_code, kind, language, time_scale)
+    made = _made_before(db, study, wish)
+    if made is not None:
+        return made
     require_open(study)
     version = newest_version(db, study)
     protocol = protocol_of(version)
@@ -200,6 +208,9 @@ def join(
     now = context.clock.utc_now()
     # Lock the ledger first, since simultaneous joins queue on it.
     slot = take_slot(db, version, protocol, kind, now)
+    made = _made_before(db, study, wish)
+    if made is not None:
+        return made
     participant = find_or_add_participant(
         db, study_id=study.id, kind=kind, code=participant_code, now=now
     )
@@ -217,6 +228,7 @@ def join(
         status="planned",
         version=0,
         snapshot={},
+        request_id=request_id,
         created_at=now,
     )
     db.add(session)
@@ -224,6 +236,40 @@ def join(
     open_attempt(db, slot, session, now)
     session.snapshot = state_to_json(initial_state(len(plan_of(db, session))))
     db.flush()
+    return session
+
+
+class _Wish(NamedTuple):
+    """What a client asked for when it asked for a session."""
+
+    request_id: str | None
+    participant_code: str | None
+    kind: str
+    language: str
+    time_scale: float
+
+
+def _made_before(db: Session, study: Study, wish: _Wish) -> StudySession | None:
+    """Return the session that a request with the same id has already created, if there is one.
+
+    Raises Conflict if it asked for another one than this request does.
+    """
+    if wish.request_id is None:
+        return None
+    session = db.scalar(select(StudySession).where(StudySession.request_id == wish.request_id))
+    if session is None:
+        return None
+    code = referenced_row(db, Participant, session.participant_id).code
+    asked = ((wish.participant_code or "").strip() or code, wish.kind, wish.language)
+    made = (code, session.kind, session.language)
+    if session.study_id != study.id or made != asked or session.time_scale != wish.time_scale:
+        raise Conflict(
+            f"this request has already created the session of {code}, and asks for another one now",
+            value=asked[0],
+            valid=code,
+            remedy="Open that session; to create another one, start again with a new request.",
+            details=[{"session_id": session.id, "status": session.status}],
+        )
     return session
 
 

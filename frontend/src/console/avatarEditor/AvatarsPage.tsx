@@ -14,6 +14,7 @@ import { DialogButtons } from "../ui/DialogButtons";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import { ListTable } from "../ui/tables";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { avatarQuery, avatars } from "./api";
 import classes from "./Editor.module.css";
 import { JUST_MADE } from "./justMade";
@@ -124,6 +125,7 @@ function NewAvatar({ all, isOpen, onClose }: NewAvatarProps): JSX.Element {
       navigate(`/avatars/${made.key}`, { state: JUST_MADE });
     },
   });
+  const submit = useSingleSubmit(add, { isReused: true });
   const close = () => {
     add.reset();
     onClose();
@@ -139,7 +141,7 @@ function NewAvatar({ all, isOpen, onClose }: NewAvatarProps): JSX.Element {
       <form
         onSubmit={(event) => {
           event.preventDefault();
-          if (key !== "" && !isTaken) add.mutate();
+          if (key !== "" && !isTaken) submit();
         }}
       >
         <Stack>

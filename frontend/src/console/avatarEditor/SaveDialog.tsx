@@ -9,6 +9,7 @@ import { nameOf } from "../account";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { DialogButtons } from "../ui/DialogButtons";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { type AvatarView, avatarQuery, avatars, type Made } from "./api";
 import { type AvatarFile, differences } from "./axes";
 import { Differences } from "./Differences";
@@ -66,6 +67,7 @@ export function SaveDialog(props: SaveDialogProps): JSX.Element {
       onSaved(saved);
     },
   });
+  const submit = useSingleSubmit(save, { isReused: true });
   const close = () => {
     save.reset();
     onClose();
@@ -85,7 +87,7 @@ export function SaveDialog(props: SaveDialogProps): JSX.Element {
       <form
         onSubmit={(event) => {
           event.preventDefault();
-          if (isReady) save.mutate(basedOn);
+          if (isReady) submit(basedOn);
         }}
       >
         <Stack gap="sm">
@@ -150,7 +152,7 @@ export function SaveDialog(props: SaveDialogProps): JSX.Element {
                 save.reset();
                 if (!(await onFollow(theirs))) close();
               }}
-              onSave={(newest) => save.mutate(newest)}
+              onSave={(newest) => submit(newest)}
               onOther={() => {
                 save.reset();
                 setAs("avatar");

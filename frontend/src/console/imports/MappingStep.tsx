@@ -9,6 +9,7 @@ import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
 import { checkQuery, instrumentQuery } from "../queries";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { CheckPanel } from "./CheckPanel";
 import { ColumnFields } from "./ColumnFields";
 import classes from "./Imports.module.css";
@@ -100,6 +101,7 @@ function Store({ study, file, mapping, allowed, forms, onDone }: StoreProps): JS
       onDone(id);
     },
   });
+  const submit = useSingleSubmit(store);
   return (
     <>
       {store.isError && <Failure error={store.error} />}
@@ -109,7 +111,7 @@ function Store({ study, file, mapping, allowed, forms, onDone }: StoreProps): JS
           leftSection={<Icon name="check" size={18} />}
           disabled={!allowed}
           loading={store.isPending}
-          onClick={() => store.mutate()}
+          onClick={() => submit()}
         >
           {t("imports.do", { count: forms })}
         </Button>

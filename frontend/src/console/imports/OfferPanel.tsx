@@ -8,6 +8,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import classes from "./Imports.module.css";
 
 interface OfferProps {
@@ -85,6 +86,7 @@ function Offer({ study, offer, onMade }: OfferedProps): JSX.Element {
       onMade(instrument);
     },
   });
+  const submit = useSingleSubmit(make, { isReused: true });
   const kept = edited.items.length;
   return (
     <>
@@ -169,7 +171,7 @@ function Offer({ study, offer, onMade }: OfferedProps): JSX.Element {
           leftSection={<Icon name="add" size={15} />}
           disabled={kept === 0 || edited.title.trim() === ""}
           loading={make.isPending}
-          onClick={() => make.mutate()}
+          onClick={() => submit()}
         >
           {t("imports.offer.make")}
         </Button>

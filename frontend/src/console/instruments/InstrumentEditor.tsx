@@ -17,6 +17,7 @@ import { useTexts } from "../i18n";
 import { Problems } from "../pages/Problems";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import classes from "./Instruments.module.css";
 import { TryIt } from "./TryIt";
 
@@ -102,6 +103,7 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
       navigate(`/instruments/${instrument.key}`);
     },
   });
+  const submit = useSingleSubmit(save);
   const preview = check?.preview ?? null;
   return (
     <div className={layout.editor}>
@@ -122,7 +124,7 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
             leftSection={<Icon name="check" size={17} />}
             disabled={!upToDate || check?.ok !== true || check.known}
             loading={save.isPending}
-            onClick={() => save.mutate()}
+            onClick={() => submit()}
           >
             {t("instrumentEditor.save")}
           </Button>

@@ -9,6 +9,7 @@ import { useLocation } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { TextFileButton } from "../ui/TextFileButton";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import classes from "./ImportDialog.module.css";
 import { offsetOfLine, Problems } from "./Problems";
 
@@ -49,6 +50,7 @@ function ImportForm({ studyKey, onClose }: Omit<ImportDialogProps, "opened">): J
       navigate(`/studies/${study.key}`);
     },
   });
+  const submit = useSingleSubmit(save);
   const change = (text: string) => {
     setYaml(text);
     check.reset();
@@ -79,7 +81,7 @@ function ImportForm({ studyKey, onClose }: Omit<ImportDialogProps, "opened">): J
           loading={save.isPending}
           onClick={() => {
             check.reset();
-            save.mutate();
+            submit();
           }}
         >
           {t(studyKey === null ? "import.save" : "import.saveVersion")}

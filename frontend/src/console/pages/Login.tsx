@@ -6,6 +6,7 @@ import { type JSX, useState } from "react";
 import { signIn } from "../account";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { SignedOutFrame } from "./SignedOutFrame";
 
 /** The sign-in page; `ended` is the account whose sign-in has expired. */
@@ -34,11 +35,12 @@ function LoginForm({ username: expiredName }: { readonly username: string }): JS
   const [username, setUsername] = useState(expiredName);
   const [password, setPassword] = useState("");
   const login = useMutation({ mutationFn: () => signIn(queries, username.trim(), password) });
+  const submit = useSingleSubmit(login);
   return (
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        login.mutate();
+        submit();
       }}
     >
       <Stack>

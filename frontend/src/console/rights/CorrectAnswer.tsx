@@ -6,6 +6,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { AnswerField } from "./AnswerField";
 import classes from "./Rights.module.css";
 
@@ -34,13 +35,14 @@ export function CorrectAnswer({ sessionId, form, item, onDone }: CorrectAnswerPr
       onDone();
     },
   });
+  const submit = useSingleSubmit(correct);
   const same = Number(value) === before || value === before;
   return (
     <form
       className={classes.correct}
       onSubmit={(event) => {
         event.preventDefault();
-        correct.mutate();
+        submit();
       }}
     >
       <AnswerField form={form} item={item} value={value} onChange={setValue} />

@@ -10,6 +10,7 @@ import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useShown } from "../ui/page";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { CopyList } from "./CopyList";
 import classes from "./Rights.module.css";
 import { Tombstone } from "./Tombstone";
@@ -63,12 +64,13 @@ function Erase({ studyKey, participant, onClose }: EraseProps): JSX.Element {
       void queries.invalidateQueries({ queryKey: ["sessions"] });
     },
   });
+  const submit = useSingleSubmit(erase);
   if (erase.data !== undefined) return <Tombstone erasure={erase.data} onClose={onClose} />;
   return (
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        if (typed === code) erase.mutate();
+        if (typed === code) submit();
       }}
     >
       <Stack>

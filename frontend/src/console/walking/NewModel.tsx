@@ -5,6 +5,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { NameField, SceneField, WholeNumbers } from "./FormFields";
 import { modelsQuery } from "./queries";
 
@@ -62,11 +63,12 @@ function Form({
       onDone();
     },
   });
+  const submit = useSingleSubmit(order);
   return (
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        order.mutate();
+        submit();
       }}
     >
       <Stack>

@@ -19,6 +19,7 @@ import { type JSX, useState } from "react";
 import { capturesQuery } from "../captures/queries";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { NameField, SceneField, WholeNumbers } from "./FormFields";
 import { populationsQuery, walkSetsQuery } from "./queries";
 import classes from "./Walking.module.css";
@@ -95,11 +96,12 @@ interface SendProps {
 
 function Send({ sending, ready }: SendProps): JSX.Element {
   const { t } = useTexts();
+  const submit = useSingleSubmit(sending);
   return (
     <>
       {sending.isError && <Failure error={sending.error} />}
       <Group justify="flex-end">
-        <Button loading={sending.isPending} disabled={!ready} onClick={() => sending.mutate()}>
+        <Button loading={sending.isPending} disabled={!ready} onClick={() => submit()}>
           {t("walking.sets.add")}
         </Button>
       </Group>

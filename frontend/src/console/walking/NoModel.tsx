@@ -8,6 +8,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
+import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { FitProgress } from "./ModelTable";
 import { modelsQuery, walkSetsQuery } from "./queries";
 import classes from "./Walking.module.css";
@@ -66,10 +67,11 @@ function TryIt(): JSX.Element {
         queries.invalidateQueries({ queryKey: walkSetsQuery.queryKey }),
       ]),
   });
+  const submit = useSingleSubmit(make, { isReused: true });
   return (
     <>
       <div className={classes.buttons}>
-        <Button loading={make.isPending} onClick={() => make.mutate()}>
+        <Button loading={make.isPending} onClick={() => submit()}>
           {t("walking.try")}
         </Button>
         <Button component={Link} href="/walking/models" variant="default">

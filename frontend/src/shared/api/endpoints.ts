@@ -44,6 +44,14 @@ export const network = {
   get: () => answer<Network>(server.GET("/api/network")),
 };
 
+interface SessionWish {
+  /** Repeating it returns the session that the first request made. */
+  readonly request_id?: string;
+  readonly participant_code: string | null;
+  readonly kind: Kind;
+  readonly language: string;
+}
+
 export const studies = {
   list: () => answer<readonly StudySummary[]>(server.GET("/api/studies")),
   check: (yaml: string) =>
@@ -60,7 +68,7 @@ export const studies = {
     ),
   sessions: (key: string) =>
     answer<readonly SessionSummary[]>(server.GET("/api/studies/{key}/sessions", study(key))),
-  join: (key: string, wish: { participant_code: string | null; kind: Kind; language: string }) =>
+  join: (key: string, wish: SessionWish) =>
     answer<SessionView>(
       server.POST("/api/studies/{key}/sessions", {
         ...study(key),

@@ -2554,6 +2554,8 @@ export interface paths {
         /**
          * Create Session
          * @description Create a session of a study, which takes the next slot of the ledger.
+         *
+         *     A repeated `request_id` returns the session that the first request created.
          */
         readonly post: operations["create_session_api_studies__key__sessions_post"];
         readonly delete?: never;
@@ -8689,6 +8691,8 @@ export interface components {
         /**
          * NewSession
          * @description A request to create a session of a study.
+         *
+         *     A repeated `request_id` creates no second session.
          */
         readonly NewSession: {
             /**
@@ -8704,6 +8708,8 @@ export interface components {
             readonly language: string;
             /** Participant Code */
             readonly participant_code?: string | null;
+            /** Request Id */
+            readonly request_id?: string | null;
             /**
              * Time Scale
              * @default 1

@@ -7,6 +7,7 @@ import { useMutation } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
+import { useSingleSubmit } from "../../ui/useSingleSubmit";
 import { fieldErrors, NewPassword, NOTHING_TYPED } from "./NewPassword";
 import { checkPassword, isGood } from "./passwordRule";
 
@@ -42,12 +43,13 @@ function PasswordForm({ account, onClose }: Omit<ChangePasswordProps, "opened">)
       onClose();
     },
   });
+  const submit = useSingleSubmit(change);
   const errors = fieldErrors(change.error);
   return (
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        if (good && current !== "") change.mutate();
+        if (good && current !== "") submit();
       }}
     >
       <Stack>

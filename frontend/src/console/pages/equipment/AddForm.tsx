@@ -14,6 +14,7 @@ import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { calibrationsQuery } from "../../queries";
+import { useSingleSubmit } from "../../ui/useSingleSubmit";
 
 interface AddFormProps {
   readonly existing: readonly string[];
@@ -46,6 +47,7 @@ export function AddForm({ existing, onClose }: AddFormProps): JSX.Element {
       onClose();
     },
   });
+  const submit = useSingleSubmit(add);
   const complete =
     [equipment, method, date].every((text) => text.trim() !== "") &&
     [delay, sd, samples].every((value) => typeof value === "number");
@@ -54,7 +56,7 @@ export function AddForm({ existing, onClose }: AddFormProps): JSX.Element {
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        if (complete) add.mutate();
+        if (complete) submit();
       }}
     >
       <Stack>

@@ -9,6 +9,7 @@ import { navigate } from "wouter/use-hash-location";
 import { startSession } from "../../account";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
+import { useSingleSubmit } from "../../ui/useSingleSubmit";
 import { fieldErrors, NewPassword, NOTHING_TYPED } from "../account/NewPassword";
 import { checkPassword, isGood } from "../account/passwordRule";
 import { RoleFacts } from "../people/RoleAndStudies";
@@ -34,13 +35,14 @@ export function JoinForm({ token, invitation, onRefused }: JoinFormProps): JSX.E
       startSession(queries, account);
     },
   });
+  const submit = useSingleSubmit(accept);
   if (isApiError(accept.error, "gone")) return onRefused(accept.error);
   const errors = fieldErrors(accept.error);
   return (
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        if (good && username.trim() !== "") accept.mutate();
+        if (good && username.trim() !== "") submit();
       }}
     >
       <Stack>

@@ -20,6 +20,7 @@ import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { invitationsQuery } from "../../queries";
 import { RoleBadge } from "../../ui/badges";
+import { useSingleSubmit } from "../../ui/useSingleSubmit";
 import { lanCommand } from "../network/lanCommand";
 import { RoleChoice, StudiesChoice } from "./RoleAndStudies";
 
@@ -67,11 +68,12 @@ function InviteForm({ onMade }: { readonly onMade: (made: Invited) => void }): J
       onMade(created);
     },
   });
+  const submit = useSingleSubmit(make);
   return (
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        make.mutate();
+        submit();
       }}
     >
       <Stack>

@@ -11,6 +11,7 @@ import {
 } from "@mantine/core";
 import { studies } from "@shared/api/endpoints";
 import type { Kind, StudyDetail } from "@shared/api/types";
+import { uuid } from "@shared/uuid";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useLocation } from "wouter";
@@ -18,6 +19,7 @@ import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { sessionQuery } from "../../queries";
 import { KINDS } from "../../ui/KindFilter";
+import { useSingleSubmit } from "../../ui/useSingleSubmit";
 
 /** The server's limit; a longer code is rejected with a message instead of being cut. */
 const LONGEST_CODE = 40;
@@ -59,6 +61,8 @@ function JoinForm({ study, firstKind, onClose }: JoinFormProps): JSX.Element {
   const { t, language: spoken } = useTexts();
   const [, navigate] = useLocation();
   const queries = useQueryClient();
+  // Chosen once for all tries: if only the answer was lost, the next one gets the same session.
+  const [request] = useState(uuid);
   const [code, setCode] = useState("");
   const [kind, setKind] = useState<Kind>(firstKind);
   const [language, setLanguage] = useState(
@@ -66,7 +70,12 @@ function JoinForm({ study, firstKind, onClose }: JoinFormProps): JSX.Element {
   );
   const join = useMutation({
     mutationFn: () =>
-      studies.join(study.key, { participant_code: code.trim() || null, kind, language }),
+      studies.join(study.key, {
+        request_id: request,
+        participant_code: code.trim() || null,
+        kind,
+        language,
+      }),
     onSuccess: (session) => {
       queries.setQueryData(sessionQuery(session.id).queryKey, session);
       void queries.invalidateQueries({ queryKey: ["studies"] });
@@ -74,11 +83,12 @@ function JoinForm({ study, firstKind, onClose }: JoinFormProps): JSX.Element {
       navigate(`/sessions/${session.id}`);
     },
   });
+  const submit = useSingleSubmit(join);
   return (
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        join.mutate();
+        submit();
       }}
     >
       <Stack>

@@ -14,6 +14,7 @@ import { usePermissions } from "../../permissions";
 import { suggestionsQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
+import { useSingleSubmit } from "../../ui/useSingleSubmit";
 import classes from "./SuggestionsTab.module.css";
 
 export function SuggestionsTab({ study }: { readonly study: StudyDetail }): JSX.Element {
@@ -175,11 +176,12 @@ function WriteForm({ study, onClose }: WriteFormProps): JSX.Element {
       onClose();
     },
   });
+  const submit = useSingleSubmit(add);
   return (
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        if (body.trim() !== "") add.mutate();
+        if (body.trim() !== "") submit();
       }}
     >
       <Stack>

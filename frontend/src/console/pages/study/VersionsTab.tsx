@@ -16,6 +16,7 @@ import { usePermissions } from "../../permissions";
 import { versionDiffQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import { ScrollBox } from "../../ui/tables";
+import { useSingleSubmit } from "../../ui/useSingleSubmit";
 import page from "./StudyPage.module.css";
 import classes from "./VersionsTab.module.css";
 
@@ -116,6 +117,7 @@ function Duplicate({ study }: { readonly study: StudyDetail }): JSX.Element {
       navigate(`/studies/${created.key}/edit`);
     },
   });
+  const submit = useSingleSubmit(copy, { isReused: true });
   const close = () => {
     copy.reset();
     setOpened(false);
@@ -134,7 +136,7 @@ function Duplicate({ study }: { readonly study: StudyDetail }): JSX.Element {
         <form
           onSubmit={(event) => {
             event.preventDefault();
-            copy.mutate();
+            submit();
           }}
         >
           <Stack>
