@@ -64,7 +64,9 @@ def test_an_unpaired_tablet_logs_no_error(
     page.wait_for_timeout(6000)
 
 
-@pytest.mark.parametrize("address", ["nothing-here", "studies", "sessions/a/b/c/d"])
+@pytest.mark.parametrize(
+    "address", ["nothing-here", "studies", "sessions/a/b/c/d", "studies/%", "studies/%zz/dashboard"]
+)
 def test_an_unknown_url_shows_page_not_found(
     experimenter: Experimenter, screenshot: Screenshot, address: str
 ) -> None:

@@ -2,7 +2,9 @@
 import type { Account } from "@shared/api/types";
 import { type JSX, lazy } from "react";
 import { Route, Switch } from "wouter";
+import { useHashLocation } from "wouter/use-hash-location";
 import { SessionPage } from "./cockpit/SessionPage";
+import { isReadable } from "./frame/places";
 import { PageNotFound, RequirePermission } from "./pages/NoPermission";
 import { StudiesPage } from "./pages/Studies";
 import { StudyPage } from "./pages/study/StudyPage";
@@ -84,6 +86,9 @@ const HelpPage = lazy(async () => ({
 }));
 
 export function Routes({ account }: { readonly account: Account }): JSX.Element {
+  // As it was written: the router's own address is decoded where that is possible.
+  const [address] = useHashLocation();
+  if (!isReadable(address)) return <Nowhere />;
   return (
     <Switch>
       <Route path="/sessions/:id/consent">
@@ -256,10 +261,14 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
         </div>
       </Route>
       <Route>
-        <div className={classes.main}>
-          <PageNotFound />
-        </div>
+        <Nowhere />
       </Route>
     </Switch>
   );
 }
+
+const Nowhere = (): JSX.Element => (
+  <div className={classes.main}>
+    <PageNotFound />
+  </div>
+);

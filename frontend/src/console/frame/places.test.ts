@@ -1,5 +1,14 @@
 import { expect, test } from "vitest";
-import { isAllowed, isAt, isWide, LAB_PAGES, SECTIONS, sectionAt, studyIn } from "./places";
+import {
+  isAllowed,
+  isAt,
+  isReadable,
+  isWide,
+  LAB_PAGES,
+  SECTIONS,
+  sectionAt,
+  studyIn,
+} from "./places";
 
 test("a study's address names the study and its section, by default the overview", () => {
   expect(studyIn("/studies/two%20words/ledger")).toBe("two words");
@@ -8,6 +17,14 @@ test("a study's address names the study and its section, by default the overview
   expect(sectionAt("/studies/latency/nonsense")).toBe("overview");
   expect(studyIn("/captures")).toBeNull();
   expect(sectionAt("/captures/a/joints")).toBeNull();
+});
+
+test("an address that cannot be decoded is no study's, and nobody's", () => {
+  for (const address of ["/studies/%", "/studies/%E0%A4%A", "/studies/%zz/dashboard"]) {
+    expect(studyIn(address)).toBeNull();
+    expect(isReadable(address)).toBe(false);
+  }
+  expect(isReadable("/studies/two%20words")).toBe(true);
 });
 
 test("a page counts as current for the addresses below it, and for no other that begins alike", () => {

@@ -126,7 +126,18 @@ export const isAt = (address: string, href: string): boolean =>
 /** The key of the study in an address; null on other pages. */
 export function studyIn(address: string): string | null {
   const key = /^\/studies\/([^/?]+)/.exec(address)?.[1];
-  return key === undefined ? null : decodeURIComponent(key);
+  return key === undefined ? null : decoded(key);
+}
+
+/** Whether an address can be read at all: a `%` in it begins the code of a character. */
+export const isReadable = (address: string): boolean => decoded(address) !== null;
+
+function decoded(text: string): string | null {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return null;
+  }
 }
 
 /** The section of a study at an address; a study's own address shows its overview. */
