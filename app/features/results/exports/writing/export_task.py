@@ -29,6 +29,7 @@ from app.features.results.exports.worker_messages import (
 from app.features.results.exports.writing.archive import zip_pieces
 from app.features.results.exports.writing.contents import Contents, Member
 from app.models import StudySession, TelemetryStream
+from app.platform.trouble import explain
 from app.wire import StreamName
 
 CHECK_EVERY_BYTES = 32 * 1024**2
@@ -48,10 +49,7 @@ def make_export(order: ExportOrder) -> ExportResult | ExportFailure:
     except ReembodyError as error:
         return ExportFailure(error.message, error.remedy)
     except (OSError, SQLAlchemyError) as error:
-        return ExportFailure(
-            f"the export could not be written: {type(error).__name__}: {str(error)[:200]}",
-            "Make it again; if that fails, too, check the server's disk and database.",
-        )
+        return _not_written(error)
 
 
 def _write_export(order: ExportOrder) -> ExportResult:
@@ -128,6 +126,19 @@ def _expect(db: Session, order: ExportOrder, progress: Progress) -> None:
 def _require_room(order: ExportOrder) -> None:
     if shutil.disk_usage(order.to.parent).free < order.keep_free_bytes:
         raise _DiskNearlyFullError
+
+
+def _not_written(error: OSError | SQLAlchemyError) -> ExportFailure:
+    trouble = explain(error)
+    if trouble is not None:
+        return ExportFailure(
+            f"the export could not be written: {trouble.message}",
+            f"{trouble.remedy} Then make the export again.",
+        )
+    return ExportFailure(
+        f"the export could not be written: {type(error).__name__}: {str(error)[:200]}",
+        "Make it again; if that fails, too, check the server's disk and database.",
+    )
 
 
 def _no_room(order: ExportOrder) -> ExportFailure:
