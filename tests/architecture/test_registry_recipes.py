@@ -252,8 +252,8 @@ def joined_drawing(sessions: pd.DataFrame) -> Drawing:
             ),
             after(
                 "FIGURES: tuple[Figure, ...] = (\n",
-                '    Figure.one("progress", lambda rows: joined_drawing(rows.filtered.sessions)),'
-                "\n",
+                '    Figure.one("progress", "joined", '
+                "lambda rows: joined_drawing(rows.filtered.sessions)),\n",
             ),
         ]
     },

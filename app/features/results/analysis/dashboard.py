@@ -60,9 +60,16 @@ def dashboard_of(
 
 
 def drawings_of(
-    material: Material, chosen: FigureFilter = NO_FILTER, group: FigureGroup | None = None
+    material: Material,
+    chosen: FigureFilter = NO_FILTER,
+    group: FigureGroup | None = None,
+    *,
+    figure: str | None = None,
 ) -> Iterator[Drawing]:
-    """Yield the figures of one or of all groups, each marked with what the filter selected."""
+    """Yield the figures of one or of all groups, each marked with what the filter selected.
+
+    `figure` limits them to those that are drawn together with the figure of this key.
+    """
     chosen = material.with_body(chosen)
     prefix = TITLE_PREFIX[material.kind]
     blinded = BLINDED_NOTE if material.blinded else ""
@@ -75,11 +82,11 @@ def drawings_of(
     )
     # Sessions of an earlier version may have had boxes that the newest one lacks.
     has_boxes = bool(material.protocol.procedure.block.phases) or bool(material.limbs)
-    for figure in FIGURES:
-        if group not in (None, figure.group):
+    for entry in FIGURES:
+        if group not in (None, entry.group) or not (figure is None or entry.may_draw(figure)):
             continue
-        for drawing in _explained(figure, rows):
-            if drawing.empty is not None and figure.of_boxes and not has_boxes:
+        for drawing in _explained(entry, rows):
+            if drawing.empty is not None and entry.of_boxes and not has_boxes:
                 continue
             shown = drawing if chosen.is_all else drawing.among_chosen()
             words = every_body.words() if drawing.every_body else chosen.words()

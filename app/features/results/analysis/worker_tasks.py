@@ -42,12 +42,11 @@ def sheet(
 
     Raises NotFound, with the keys of all figures, for an unknown figure.
     """
-    keys = []
     with _material(url, study_key, kind) as material:
-        for drawing in drawings_of(material, chosen):
+        for drawing in drawings_of(material, chosen, figure=figure):
             if drawing.key == figure:
                 return sheet_of(drawing, material)
-            keys.append(drawing.key)
+        keys = [drawing.key for drawing in drawings_of(material, chosen)]
     raise NotFound("there is no such figure", value=figure, valid=keys)
 
 

@@ -89,24 +89,31 @@ class Figure:
 
     Attributes:
         group: The group on the page; the figures of a group are drawn together.
+        keys: What the keys of its drawings begin with, so that one is found without drawing all.
         draw: Makes the drawings, each with its key, title and caption, from the valid rows.
         of_boxes: Its data are of tasks at boxes: it is empty for ever where a study has none.
     """
 
     group: Group
+    keys: tuple[str, ...]
     draw: Callable[[Rows], Iterator[Drawing]]
     of_boxes: bool = False
+
+    def may_draw(self, key: str) -> bool:
+        """Return whether one of its drawings may have this key."""
+        return key.startswith(self.keys)
 
     @classmethod
     def one(
         cls,
         group: Group,
+        key: str,
         draw: Callable[[Rows], Drawing],
         *,
         wide: bool = False,
         of_boxes: bool = False,
     ) -> "Figure":
-        """Create the entry of a builder that returns one drawing.
+        """Create the entry of a builder that returns one drawing, with this key.
 
         `wide`: the drawing needs the full width of the page.
         """
@@ -115,7 +122,7 @@ class Figure:
             drawing = draw(rows)
             yield drawing.of_group(group, wide=wide or drawing.wide)
 
-        return cls(group, drawings, of_boxes)
+        return cls(group, (key,), drawings, of_boxes)
 
 
 def orders_of(protocol: StudyProtocol) -> list[str]:
@@ -127,70 +134,105 @@ def orders_of(protocol: StudyProtocol) -> list[str]:
 
 
 FIGURES: tuple[Figure, ...] = (
-    Figure("embodiment", lambda rows: rows.by_body("embodiment")),
-    Figure("embodiment", lambda rows: embodiment_drawings(rows.counting(rows.filtered.scores))),
+    Figure("embodiment", ("embodiment_",), lambda rows: rows.by_body("embodiment")),
+    Figure(
+        "embodiment",
+        ("embodiment_",),
+        lambda rows: embodiment_drawings(rows.counting(rows.filtered.scores)),
+    ),
     Figure(
         "answers",
+        ("likert",),
         lambda rows: likert_drawings(
             rows.counting(rows.filtered.answers), rows.filtered.instruments
         ),
     ),
-    Figure("tasks", lambda rows: rows.by_body("tasks")),
-    Figure("tasks", Rows.crossings),
+    Figure(
+        "tasks", ("completions_bodies", "contact_time_bodies"), lambda rows: rows.by_body("tasks")
+    ),
+    Figure("tasks", ("crossing_",), Rows.crossings),
     Figure.one(
         "tasks",
+        "completions",
         lambda rows: completions_drawing(rows.phases).tested_as("completions"),
         of_boxes=True,
     ),
-    Figure.one("tasks", lambda rows: learning_drawing(rows.phases), of_boxes=True),
+    Figure.one("tasks", "learning", lambda rows: learning_drawing(rows.phases), of_boxes=True),
     Figure.one(
         "tasks",
+        "contacts",
         lambda rows: contacts_drawing(rows.touching, rows.contacts).tested_as("contact_time"),
         wide=True,
         of_boxes=True,
     ),
     Figure.one(
         "tasks",
+        "contacts_map",
         lambda rows: contact_map_drawing(rows.touching, rows.contacts),
         of_boxes=True,
     ),
-    Figure("movement", lambda rows: rows.by_body("movement")),
-    Figure.one("movement", lambda rows: joint_error_body_drawing(rows.errors)),
-    Figure.one("movement", lambda rows: joint_error_drawing(rows.errors).tested_as("joint_error")),
-    Figure.one("movement", lambda rows: achieved_drawing(rows.phases)),
-    Figure.one("movement", lambda rows: joint_error_blocks_drawing(rows.errors), of_boxes=True),
+    Figure("movement", ("joint_error_bodies",), lambda rows: rows.by_body("movement")),
+    Figure.one("movement", "joint_error_body", lambda rows: joint_error_body_drawing(rows.errors)),
     Figure.one(
         "movement",
+        "joint_error_parts",
+        lambda rows: joint_error_drawing(rows.errors).tested_as("joint_error"),
+    ),
+    Figure.one("movement", "achieved_latency", lambda rows: achieved_drawing(rows.phases)),
+    Figure.one(
+        "movement",
+        "joint_error_blocks",
+        lambda rows: joint_error_blocks_drawing(rows.errors),
+        of_boxes=True,
+    ),
+    Figure.one(
+        "movement",
+        "joint_error_course",
         lambda rows: joint_error_course_drawing(rows.counting(rows.filtered.courses)),
         of_boxes=True,
     ),
-    Figure.one("movement", lambda rows: joint_error_map_drawing(rows.errors), wide=True),
-    Figure("movement", lambda rows: joint_error_fingers_drawings(rows.errors)),
+    Figure.one(
+        "movement",
+        "joint_error_joints",
+        lambda rows: joint_error_map_drawing(rows.errors),
+        wide=True,
+    ),
+    Figure(
+        "movement", ("joint_error_fingers",), lambda rows: joint_error_fingers_drawings(rows.errors)
+    ),
     Figure(
         "demographics",
+        ("demographics_",),
         lambda rows: demographics_drawings(
             rows.counting(rows.filtered.scores),
             rows.counting(rows.filtered.answers),
             rows.filtered.instruments,
         ),
     ),
-    Figure.one("quality", lambda rows: quality_drawing(rows.counting(rows.filtered.quality))),
+    Figure.one(
+        "quality", "quality", lambda rows: quality_drawing(rows.counting(rows.filtered.quality))
+    ),
     Figure.one(
         "quality",
+        "exclusions",
         lambda rows: exclusions_drawing(
             rows.filtered.sessions, rows.filtered.phases, rows.filtered.scores
         ),
     ),
     Figure.one(
-        "quality", lambda rows: alarms_drawing(rows.filtered.alarms, len(rows.filtered.sessions))
+        "quality",
+        "alarms",
+        lambda rows: alarms_drawing(rows.filtered.alarms, len(rows.filtered.sessions)),
     ),
     Figure.one(
         "progress",
+        "progress_time",
         lambda rows: progress_time_drawing(
             rows.filtered.sessions, len(planned_slots(rows.filtered.protocol))
         ),
     ),
     Figure.one(
+        "progress",
         "progress",
         lambda rows: progress_drawing(
             rows.filtered.sessions, orders_of(rows.filtered.protocol), blinded=rows.filtered.blinded
