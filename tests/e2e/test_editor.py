@@ -100,6 +100,9 @@ def test_a_study_from_template_to_second_version(
     screenshot(page, "editor-changes")
     page.get_by_role("button", name="Save as a version").click()
     expect(page.get_by_text("Saved as version 2")).to_be_visible()
+    expect(page.get_by_text("As stored")).to_be_visible()
+    expect(page.get_by_text("The content is the same")).to_be_visible()
+    expect(page.get_by_text("The balance is affected")).to_have_count(0)
 
     writer.open_tab("my-study", "versions")
     expect(page.get_by_role("link", name="To its page, for a new session")).to_be_hidden()

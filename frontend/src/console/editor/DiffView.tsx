@@ -107,14 +107,16 @@ function lineClass(line: string): string | undefined {
 interface ChangesProps {
   readonly draft: Draft;
   readonly studyKey: string;
+  /** The text of the newest version: what is compared changes with it. */
+  readonly stored: string;
 }
 
 /** What saving the draft would change, compared with the newest version. */
-export function Changes({ draft, studyKey }: ChangesProps): JSX.Element {
+export function Changes({ draft, studyKey, stored }: ChangesProps): JSX.Element {
   const { t } = useTexts();
   const usable = draft.upToDate && draft.check?.ok === true;
   const query = useQuery({
-    queryKey: ["draft-diff", studyKey, draft.text],
+    queryKey: ["draft-diff", studyKey, stored, draft.text],
     queryFn: () => drafts.diff(studyKey, draft.text),
     enabled: usable,
     gcTime: 0,

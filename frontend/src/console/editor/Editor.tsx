@@ -81,7 +81,9 @@ export function Editor(props: EditorProps): JSX.Element {
           {tab === "dryRun" && <DryRun draft={draft} studyKey={studyKey} />}
         </Tabs.Panel>
         <Tabs.Panel value="changes" className={classes.page ?? ""}>
-          {tab === "changes" && studyKey !== null && <Changes draft={draft} studyKey={studyKey} />}
+          {tab === "changes" && studyKey !== null && (
+            <Changes draft={draft} studyKey={studyKey} stored={stored} />
+          )}
         </Tabs.Panel>
       </Tabs>
     </div>
