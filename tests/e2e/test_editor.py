@@ -173,6 +173,40 @@ def test_unsaved_changes_are_not_lost(writer: Writer) -> None:
     expect(page.locator(".cm-content")).to_contain_text("en: Acting through another body")
 
 
+def test_the_draft_of_a_new_study_is_kept_until_it_is_discarded(
+    writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
+) -> None:
+    """An unsaved new study can be continued, and no template replaces it without a word."""
+    page = writer.page
+    template = page.get_by_role("link", name="Two latencies, hand task")
+    page.get_by_role("link", name="New study").click()
+    template.click()
+    writer.sees_no_problem()
+    page.get_by_label("Key", exact=True).first.fill("kept-study")
+    expect(page.locator(".cm-content")).to_contain_text("key: kept-study")
+    page.get_by_role("link", name="Storage").click()
+    page.get_by_role("button", name="Leave", exact=True).click()
+    page.goto(f"{writer.url}/#/new")
+    expect(page.get_by_text("Continue your draft")).to_be_visible()
+    expect(page.get_by_text("Two latencies, hand task (kept-study), changed")).to_be_visible()
+    assert axe(page) == []
+    screenshot(page, "new-study-draft")
+    template.click()
+    discard = page.get_by_role("button", name="Discard it and open “Two latencies, hand task”")
+    expect(discard).to_be_visible()
+    assert axe(page) == []
+    page.get_by_role("link", name="Continue", exact=True).click()
+    expect(page.locator(".cm-content")).to_contain_text("key: kept-study")
+    page.reload()
+    expect(page.locator(".cm-content")).to_contain_text("key: kept-study")
+    page.goto(f"{writer.url}/#/new/template/two-latencies-hand")
+    discard.click()
+    expect(page.locator(".cm-content")).not_to_contain_text("key: kept-study")
+    page.goto(f"{writer.url}/#/new")
+    expect(page.get_by_role("heading", name="From a template")).to_be_visible()
+    expect(page.get_by_text("Continue your draft")).to_have_count(0)
+
+
 def test_an_archived_study_comes_back(writer: Writer) -> None:
     """An archived study disappears from the list after confirmation and can be restored."""
     page = writer.page

@@ -6,7 +6,7 @@ import { inLanguage } from "@shared/text";
 import { useMutation, useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useLocation } from "wouter";
-import { storeDraft, storedDraft } from "../editor/LeaveGuard";
+import { GIVEN_START, storeDraft, storedDraft } from "../editor/keptDraft";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { studiesQuery, templatesQuery } from "../queries";
@@ -26,7 +26,6 @@ interface UseInStudyProps {
 const STUDY = "study ";
 const TEMPLATE = "template ";
 /** Where the study editor keeps a new study that was begun elsewhere. */
-const NEW = "new";
 
 export function UseInStudy(props: UseInStudyProps): JSX.Element {
   const { avatarKey, title, version, unsaved, onClose } = props;
@@ -55,10 +54,10 @@ export function UseInStudy(props: UseInStudyProps): JSX.Element {
         { path: ["avatar"], action: "set", value: "physics" },
         { path: ["avatar_configuration"], action: "set", value: { key: avatarKey, version } },
       ]);
-      const slot = isStudy ? key : NEW;
+      const slot = isStudy ? key : GIVEN_START;
       storeDraft(slot, yaml);
       if (storedDraft(slot) !== yaml) throw new Error(t("avatars.use.notKept"));
-      return isStudy ? `/studies/${key}/edit` : "/new/draft";
+      return isStudy ? `/studies/${key}/edit` : "/new/given";
     },
     // The editor shows the field of the avatar first.
     onSuccess: (address) => navigate(address, { state: { shown: "avatar" } }),

@@ -20,7 +20,8 @@ import { DryRun } from "./DryRun";
 import classes from "./Editor.module.css";
 import { Form } from "./Form";
 import { FormContext, type FormState } from "./formContext";
-import { dropDraft, LeaveGuard, storeDraft } from "./LeaveGuard";
+import { dropDraft, NEW_STUDY, storeDraft } from "./keptDraft";
+import { LeaveGuard } from "./LeaveGuard";
 import { isList, type JsonObject } from "./paths";
 import { specOfFile } from "./schema";
 import { type Draft, useDraft } from "./useDraft";
@@ -30,8 +31,10 @@ interface EditorProps {
   /** The study that gets a new version; null creates a new study. */
   readonly studyKey: string | null;
   readonly title: string;
-  /** The stored text, with which the editing starts. */
+  /** The stored text, with which the editing starts; empty for a new study. */
   readonly stored: string;
+  /** The text at which there is nothing to keep: the stored one, or the start of a new study. */
+  readonly unchanged: string;
   /** The text at the beginning; another editor is made for another one. */
   readonly initial: string;
   readonly notice?: ReactNode;
@@ -43,22 +46,23 @@ const TABS = ["write", "dryRun", "changes"] as const;
 type Tab = (typeof TABS)[number];
 
 export function Editor(props: EditorProps): JSX.Element {
-  const { studyKey, title, stored, notice, onSave } = props;
+  const { studyKey, title, stored, unchanged, notice, onSave } = props;
   const { t } = useTexts();
   // The field owns the text: after a save it goes on where it is.
   const [initial] = useState(props.initial);
   const draft = useDraft(initial);
   const [tab, setTab] = useState<Tab>("write");
-  const id = studyKey ?? "new";
+  const id = studyKey ?? NEW_STUDY;
   const unsaved = draft.text !== stored;
+  const isChanged = draft.text !== unchanged;
   useEffect(() => {
-    if (unsaved) storeDraft(id, draft.text);
+    if (isChanged) storeDraft(id, draft.text);
     else dropDraft(id);
-  }, [id, unsaved, draft.text]);
+  }, [id, isChanged, draft.text]);
   const tabs = studyKey === null ? TABS.filter((one) => one !== "changes") : TABS;
   return (
     <div className={classes.editor}>
-      <LeaveGuard unsaved={unsaved} />
+      <LeaveGuard unsaved={isChanged} />
       <Bar draft={draft} studyKey={studyKey} title={title} unsaved={unsaved} onSave={onSave} />
       {notice}
       <Tabs
@@ -132,7 +136,7 @@ function Bar({ draft, studyKey, title, unsaved, onSave }: BarProps): JSX.Element
       return studyKey === null ? studies.add(draft.text) : studies.addVersion(studyKey, draft.text);
     },
     onSuccess: async (study) => {
-      dropDraft(studyKey ?? "new");
+      dropDraft(studyKey ?? NEW_STUDY);
       await queries.invalidateQueries({ queryKey: ["studies"] });
       const saved = t("editor.saved", { version: study.version });
       const here = `/studies/${study.key}/edit`;

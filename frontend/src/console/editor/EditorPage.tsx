@@ -2,7 +2,7 @@
  * The page for editing a study: a stored one, or a new one from a template, a study, a file or
  * nothing.
  */
-import { Button } from "@mantine/core";
+import { Button, Title } from "@mantine/core";
 import { drafts } from "@shared/api/drafts";
 import { studies } from "@shared/api/endpoints";
 import type { StudyDetail } from "@shared/api/types";
@@ -17,7 +17,8 @@ import { templatesQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import { Editor } from "./Editor";
-import { dropDraft, storedDraft } from "./LeaveGuard";
+import { dropDraft, GIVEN_START, keptDraft, NEW_STUDY, storedDraft } from "./keptDraft";
+import { NewDraft } from "./NewDraft";
 
 export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.Element {
   const { t, language } = useTexts();
@@ -44,11 +45,9 @@ export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.
           onSave={(text) => {
             saved.current = text;
           }}
-          id={study.key}
           studyKey={study.key}
           title={study.protocol === null ? study.title : inLanguage(study.protocol.title, language)}
           stored={study.yaml ?? ""}
-          begin={study.yaml ?? ""}
         />
       )}
     </Loaded>
@@ -56,7 +55,7 @@ export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.
 }
 
 interface NewStudyEditorProps {
-  /** "template", "study", "empty" or "draft" (what was imported or kept). */
+  /** "template", "study", "empty", "given" (by another page, or a file) or "draft" (kept). */
   readonly from: string;
   readonly name: string | undefined;
 }
@@ -65,7 +64,7 @@ const EMPTY =
   "# A study is conditions, orders, a procedure, places, colours and texts.\nkey: my-study\n";
 
 export function NewStudyEditor({ from, name = "" }: NewStudyEditorProps): JSX.Element {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   useTitle(t("new.title"));
   const templates = useQuery({ ...templatesQuery, enabled: from === "template" });
   const source = useQuery({
@@ -80,79 +79,102 @@ export function NewStudyEditor({ from, name = "" }: NewStudyEditorProps): JSX.El
     gcTime: 0,
     staleTime: Number.POSITIVE_INFINITY,
   });
-  const begin = (text: string) => (
-    <EditorWithDraft
-      id="new"
-      studyKey={null}
-      title={t("new.title")}
-      stored=""
-      begin={text}
-      fresh={from !== "draft"}
-    />
-  );
-  if (from === "study") return <Loaded query={source}>{({ yaml }) => begin(yaml)}</Loaded>;
+  if (from === "study") {
+    return <Loaded query={source}>{({ yaml }) => <NewStudyFrom text={yaml} name={name} />}</Loaded>;
+  }
   if (from === "template") {
     return (
       <Loaded query={templates}>
         {(all) => {
           const found = all.find(({ key }) => key === name);
-          return found === undefined ? <Failure error={new Error(name)} /> : begin(found.yaml);
+          return found === undefined ? (
+            <Failure error={new Error(name)} />
+          ) : (
+            <NewStudyFrom text={found.yaml} name={inLanguage(found.title, language)} />
+          );
         }}
       </Loaded>
     );
   }
-  return begin(EMPTY);
+  if (from === "given") {
+    return <NewStudyFrom text={storedDraft(GIVEN_START) ?? EMPTY} name={t("new.draft.given")} />;
+  }
+  if (from === "draft") {
+    return <NewStudy begin={EMPTY} initial={storedDraft(NEW_STUDY) ?? EMPTY} />;
+  }
+  return <NewStudyFrom text={EMPTY} name={t("new.draft.empty")} />;
+}
+
+interface NewStudyFromProps {
+  readonly text: string;
+  /** What the text is, where a draft has to be discarded before it opens. */
+  readonly name: string;
+}
+
+/** A new study from a chosen start, once an unsaved draft of another one was dealt with. */
+function NewStudyFrom({ text, name }: NewStudyFromProps): JSX.Element {
+  const { t } = useTexts();
+  const [kept, setKept] = useState(() => keptDraft(NEW_STUDY));
+  if (kept === null || kept.text === text) return <NewStudy begin={text} initial={text} />;
+  return (
+    <>
+      <Title order={1}>{t("new.title")}</Title>
+      <NewDraft kept={kept} instead={name} onDiscarded={() => setKept(null)} />
+    </>
+  );
+}
+
+interface NewStudyProps {
+  readonly begin: string;
+  readonly initial: string;
+}
+
+function NewStudy(props: NewStudyProps): JSX.Element {
+  const { t } = useTexts();
+  // What is kept changes with every key: the editor begins once.
+  const [{ begin, initial }] = useState(props);
+  return (
+    <Editor studyKey={null} title={t("new.title")} stored="" unchanged={begin} initial={initial} />
+  );
 }
 
 interface EditorWithDraftProps {
-  readonly id: string;
-  readonly studyKey: string | null;
+  readonly studyKey: string;
   readonly title: string;
   readonly stored: string;
-  readonly begin: string;
   /** Called with the text that is about to be stored. */
-  readonly onSave?: (text: string) => void;
-  /** Whether the starting point was just chosen, so that it replaces a kept draft. */
-  readonly fresh?: boolean;
+  readonly onSave: (text: string) => void;
 }
 
 /**
  * The editor, starting with the unsaved changes kept from an earlier visit, which can be discarded.
  */
-function EditorWithDraft({
-  id,
-  studyKey,
-  title,
-  stored,
-  begin,
-  fresh = false,
-  onSave,
-}: EditorWithDraftProps): JSX.Element {
+function EditorWithDraft({ studyKey, title, stored, onSave }: EditorWithDraftProps): JSX.Element {
   const { t, language } = useTexts();
-  const [kept] = useState(() => (fresh ? null : storedDraft(id)));
+  const [kept] = useState(() => keptDraft(studyKey));
   const [dropped, setDropped] = useState(false);
   const [openedAt] = useState(() => new Date().toISOString());
-  const restored = kept !== null && kept !== stored && !dropped;
+  const restored = kept !== null && kept.text !== stored && !dropped;
   return (
     <Editor
       key={restored ? "kept" : "stored"}
-      {...(onSave === undefined ? {} : { onSave })}
+      onSave={onSave}
       studyKey={studyKey}
       title={title}
       stored={stored}
-      initial={restored ? kept : begin}
+      unchanged={stored}
+      initial={restored ? kept.text : stored}
       notice={
-        restored &&
-        studyKey !== null && (
+        restored && (
           <Notice
             tone="info"
-            title={t("editor.restored", { time: dateTime(openedAt, language) })}
+            title={t("editor.restored", { time: dateTime(kept.changedAt ?? openedAt, language) })}
             actions={
               <Button
                 size="xs"
                 variant="default"
                 onClick={() => {
-                  dropDraft(id);
+                  dropDraft(studyKey);
                   setDropped(true);
                 }}
               >

@@ -1,4 +1,4 @@
-/** Unsaved changes: kept in the browser, with a confirmation before the page is left. */
+/** Unsaved changes: a confirmation before the page is left. */
 import { Button, Group, Modal, Text } from "@mantine/core";
 import { type JSX, useEffect, useState } from "react";
 import { useLocation } from "wouter";
@@ -53,23 +53,4 @@ export function LeaveGuard({ unsaved }: { readonly unsaved: boolean }): JSX.Elem
       </Group>
     </Modal>
   );
-}
-
-/** The prefix of unsaved drafts in this browser's storage, so that closing a page loses nothing. */
-const PREFIX = "reembody.draft.";
-
-export function storedDraft(id: string): string | null {
-  return localStorage.getItem(PREFIX + id);
-}
-
-export function storeDraft(id: string, text: string): void {
-  try {
-    localStorage.setItem(PREFIX + id, text);
-  } catch {
-    // A full or forbidden storage must not prevent editing; the page still warns before it closes.
-  }
-}
-
-export function dropDraft(id: string): void {
-  localStorage.removeItem(PREFIX + id);
 }

@@ -5,14 +5,15 @@ import type { StudySummary } from "@shared/api/types";
 import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
-import type { JSX, ReactNode } from "react";
+import { type JSX, type ReactNode, useState } from "react";
 import { Link, useLocation } from "wouter";
 import { useTexts } from "../i18n";
 import { studiesQuery, templatesQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import { TextFileButton } from "../ui/TextFileButton";
-import { storeDraft } from "./LeaveGuard";
+import { GIVEN_START, keptDraft, NEW_STUDY, storeDraft } from "./keptDraft";
+import { NewDraft } from "./NewDraft";
 import classes from "./NewStudy.module.css";
 
 export function NewStudyPage(): JSX.Element {
@@ -20,6 +21,7 @@ export function NewStudyPage(): JSX.Element {
   useTitle(t("new.title"));
   // What follows the lists is shown with them, or they would push it down.
   const studies = useQuery(studiesQuery);
+  const [kept, setKept] = useState(() => keptDraft(NEW_STUDY));
   return (
     <>
       <Link href="/" className={classes.crumbs ?? ""}>
@@ -28,6 +30,7 @@ export function NewStudyPage(): JSX.Element {
       </Link>
       <Title order={1}>{t("new.title")}</Title>
       <p className={classes.lead}>{t("new.lead")}</p>
+      {kept !== null && <NewDraft kept={kept} instead={null} onDiscarded={() => setKept(null)} />}
       <Title order={2}>{t("new.templates")}</Title>
       <Loaded query={useQuery(templatesQuery)}>
         {(templates) => (
@@ -121,8 +124,8 @@ function FromFile(): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
   const open = (text: string) => {
-    storeDraft("new", text);
-    navigate("/new/draft");
+    storeDraft(GIVEN_START, text);
+    navigate("/new/given");
   };
   return (
     <StartOption icon="upload" title={t("new.import")} lead={t("new.import.lead")}>

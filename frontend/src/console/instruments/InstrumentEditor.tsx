@@ -10,7 +10,8 @@ import { keepPreviousData, useMutation, useQuery, useQueryClient } from "@tansta
 import { type JSX, useEffect, useRef, useState } from "react";
 import { useLocation } from "wouter";
 import layout from "../editor/Editor.module.css";
-import { dropDraft, LeaveGuard, storeDraft, storedDraft } from "../editor/LeaveGuard";
+import { dropDraft, storeDraft, storedDraft } from "../editor/keptDraft";
+import { LeaveGuard } from "../editor/LeaveGuard";
 import { showLine, YamlField, type YamlText } from "../editor/YamlField";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
