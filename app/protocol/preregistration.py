@@ -73,7 +73,7 @@ class PrimaryTest(Strict):
                 "have neither.",
                 value=self.measure,
                 valid="instrument and score with the measure score; neither with other measures",
-                remedy="Add both, as in instrument: karas2020 and score: agency, or remove both.",
+                remedy="Add the questionnaire after the task and one of its scores, or neither.",
                 at=("measure",),
             )
         test = statistical_test(self.test)
@@ -297,7 +297,7 @@ def _conditions(
             f"{len(keys)}.",
             test,
             possible,
-            "Use against_reference with one of the conditions.",
+            f"Use one of: {', '.join(possible)}.",
         )
 
 

@@ -80,6 +80,11 @@ def test_a_study_from_template_to_second_version(
     writer.sees_no_problem()
     expect(latency).to_have_value("200")
 
+    writer.open_section("Preregistration")
+    page.get_by_role("button", name="Preregistration").click()
+    expect(page.get_by_label("Planned participants")).to_have_value("12")
+    writer.sees_no_problem()
+
     page.get_by_role("tab", name="Dry run").click()
     expect(page.get_by_role("row", name="Debriefing")).to_be_visible()
     expect(page.get_by_role("row", name="200 ms added").first).to_be_visible()

@@ -255,6 +255,12 @@ function FormHalf({ draft }: { readonly draft: Draft }): JSX.Element {
     tree,
     languages: isList(tree.languages) ? tree.languages.map(String) : NOBODY,
     instruments: library.data?.map(({ key }) => key) ?? NOBODY,
+    known: {
+      slots: draft.check.summary?.slots ?? null,
+      scores: Object.fromEntries(
+        (library.data ?? []).map(({ key, scores }) => [key, scores.map((score) => score.key)]),
+      ),
+    },
     problems: draft.problems,
     change: draft.change,
     reveal: draft.reveal,

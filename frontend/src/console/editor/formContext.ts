@@ -8,12 +8,14 @@ import { createContext, useContext, useEffect, useRef, useState } from "react";
 import { type Key, useTexts } from "../i18n";
 import { preregistrationEn } from "../preregistration/texts";
 import { fieldsEn } from "./fields/texts";
+import type { KnownOfStudy } from "./firstPreregistration";
 import { type Change, type JsonObject, type Path, pathText, valueAt } from "./paths";
 
 export interface FormState {
   readonly tree: JsonObject;
   readonly languages: readonly string[];
   readonly instruments: readonly string[];
+  readonly known: KnownOfStudy;
   readonly problems: readonly ConfigProblem[];
   readonly change: (changes: readonly Change[]) => void;
   /** Show the position in the text. */

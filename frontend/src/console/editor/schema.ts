@@ -149,6 +149,12 @@ function resolved(root: Raw, node: Raw): Raw {
   return option === undefined ? node : resolved(root, option);
 }
 
+/** The next whole number above a limit, or what lies halfway to the largest that is valid. */
+function numberAbove(above: number | null, maximum: number | null): number {
+  if (above === null) return 0;
+  return maximum !== null && above + 1 > maximum ? (above + maximum) / 2 : above + 1;
+}
+
 /** An initial value; texts get an entry for every language of the study. */
 export function blank(spec: Spec, languages: readonly string[], tag?: string): Json {
   switch (spec.kind) {
@@ -157,7 +163,7 @@ export function blank(spec: Spec, languages: readonly string[], tag?: string): J
     case "choice":
       return spec.values[0] ?? "";
     case "number":
-      return spec.minimum ?? (spec.above === null ? 0 : spec.above + 1);
+      return spec.minimum ?? numberAbove(spec.above, spec.maximum);
     case "boolean":
       return false;
     case "words":

@@ -4,6 +4,7 @@ import { Icon } from "@shared/ui/Icon";
 import { type FormEvent, type JSX, type KeyboardEvent, useRef, useState } from "react";
 import { useTexts } from "../../i18n";
 import classes from "../Editor.module.css";
+import { firstPreregistration } from "../firstPreregistration";
 import { useForm, useLabels, useProblem, useValue } from "../formContext";
 import { isList, isObject, type Json, type Path } from "../paths";
 import { blank, type Field, type ListSpec, type ObjectSpec, type Spec } from "../schema";
@@ -72,9 +73,13 @@ interface ObjectFieldsProps {
 /** The fields that are present or required, and buttons that add the others. */
 export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): JSX.Element {
   const { t } = useTexts();
-  const { change, languages } = useForm();
+  const { change, languages, tree, known } = useForm();
   const labels = useLabels();
   const value = useValue(path);
+  const begun = (field: Field): Json =>
+    path.length === 0 && field.name === "preregistration"
+      ? firstPreregistration(tree, known)
+      : blank(field.spec, languages);
   const has = (field: Field) => isObject(value) && value[field.name] !== undefined;
   const fields = spec.fields.filter(
     (field) => !without.includes(field.name) && field.spec.kind !== "fixed",
@@ -134,8 +139,7 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
               leftSection={<Icon name="add" size={14} />}
               onClick={() => {
                 if (field.spec.kind === "words") return open(field.name);
-                const value = blank(field.spec, languages);
-                change([{ path: [...path, field.name], action: "set", value }]);
+                change([{ path: [...path, field.name], action: "set", value: begun(field) }]);
               }}
             >
               {labels.field(field.name, path)}
