@@ -27,6 +27,13 @@ _EXPECTED = {
     "dict_type": ("a mapping", "Write keys with values, indented below it."),
     "mapping_type": ("a mapping of languages", "Write for example {en: ..., de: ...}."),
 }
+_NUMBERS = ("int_type", "float_type")
+_BOUNDS = (
+    ("minimum", "at least"),
+    ("exclusiveMinimum", "above"),
+    ("maximum", "at most"),
+    ("exclusiveMaximum", "below"),
+)
 _MAX_SHOWN = 200
 MOST_EXPLAINED = 200
 """How many problems are explained; the others are counted."""
@@ -104,6 +111,8 @@ def _finding(details: ErrorDetails, path: Path, schema: Schema, tree: Plain) -> 
         inner = (*path, *context["at"])
         remedy = f"{did_you_mean(value, _words(context['valid']))}{context['remedy']}"
         return DefinitionProblem(inner, context["said"], value, context["valid"], remedy)
+    if kind in _NUMBERS and given in ("", None):
+        return _missing_number(path, given, schema_at(schema, tree, path))
     if kind in _EXPECTED:
         expected, remedy = _EXPECTED[kind]
         return DefinitionProblem(
@@ -127,6 +136,21 @@ def _missing(path: Path, schema: Schema) -> DefinitionProblem:
         return DefinitionProblem(path, message, remedy="Add the missing values.")
     remedy = f"Add {path[-1]}" + (f": {description}." if _is_short(description) else ".")
     return DefinitionProblem(path, f"The key {path[-1]!r} is missing.", None, description, remedy)
+
+
+def _missing_number(path: Path, given: object, schema: Schema) -> DefinitionProblem:
+    """Describe a number that is not there yet, such as the emptied field of a form."""
+    whole = "a whole number" if schema.get("type") == "integer" else "a number"
+    low, high = schema.get("minimum"), schema.get("maximum")
+    if low is not None and high is not None:
+        limits = f" from {low:g} to {high:g}"
+    else:
+        bounds = [f"{words} {schema[bound]:g}" for bound, words in _BOUNDS if bound in schema]
+        limits = f" {', '.join(bounds)}" if bounds else ""
+    description = schema.get("description")
+    valid = description if _is_short(description) else f"{whole}{limits}"
+    wanted = f"{whole}{limits}" if limits or valid == whole else f"{whole}: {valid}"
+    return DefinitionProblem(path, "A number is missing here.", given, valid, f"Give {wanted}.")
 
 
 def _unknown_key(path: Path, given: object, schema: Schema) -> DefinitionProblem:

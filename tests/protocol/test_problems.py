@@ -35,6 +35,19 @@ from tests.protocol.helpers import edited, problems
             "quotes",
         ),
         (
+            ("latency_ms: 125", "latency_ms: ''"),
+            "conditions[1].latency_ms",
+            "A number is missing here.",
+            "0 or more",
+        ),
+        (("replicates: 2", "replicates:"), "orders.replicates", "missing", "from 1 to 1000"),
+        (
+            ("duration_s: 60", "duration_s: ''"),
+            "procedure.block.phases[0].duration_s",
+            "A number is missing here.",
+            "a number above 0",
+        ),
+        (
             ("latency_ms: 125", "latency_ms: 0"),
             "conditions[1].latency_ms",
             "both add 0 ms",
