@@ -1,5 +1,5 @@
 /** The offer of a new study's unsaved draft: what it is, when it was changed, and what to do. */
-import { Button } from "@mantine/core";
+import { Button, Group } from "@mantine/core";
 import { drafts } from "@shared/api/drafts";
 import { dateTime } from "@shared/format";
 import { inLanguage } from "@shared/text";
@@ -9,6 +9,7 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import { dropDraft, type KeptText, NEW_STUDY } from "./keptDraft";
+import classes from "./NewStudy.module.css";
 import { isObject, type Json } from "./paths";
 
 /** Where the kept draft is opened. */
@@ -29,28 +30,30 @@ export function NewDraft({ kept, instead, onDiscarded }: NewDraftProps): JSX.Ele
     onDiscarded();
   };
   return (
-    <Notice
-      tone="info"
-      title={t(instead === null ? "new.draft" : "new.draft.first")}
-      actions={
-        <>
-          <Button size="xs" component={Link} href={DRAFT_ADDRESS}>
-            {t("new.draft.continue")}
-          </Button>
-          <Button size="xs" variant="default" onClick={discard}>
-            {instead === null
-              ? t("new.draft.discard")
-              : t("new.draft.discardFor", { name: instead })}
-          </Button>
-        </>
-      }
-    >
-      {name}
-      {", "}
-      {kept.changedAt === null
-        ? t("new.draft.earlier")
-        : t("new.draft.changed", { time: dateTime(kept.changedAt, language) })}
-    </Notice>
+    <div className={classes.draft}>
+      <Notice
+        tone="info"
+        title={t(instead === null ? "new.draft" : "new.draft.first")}
+        actions={
+          <Group gap="xs">
+            <Button size="xs" component={Link} href={DRAFT_ADDRESS}>
+              {t("new.draft.continue")}
+            </Button>
+            <Button size="xs" variant="default" onClick={discard}>
+              {instead === null
+                ? t("new.draft.discard")
+                : t("new.draft.discardFor", { name: instead })}
+            </Button>
+          </Group>
+        }
+      >
+        {name}
+        {", "}
+        {kept.changedAt === null
+          ? t("new.draft.earlier")
+          : t("new.draft.changed", { time: dateTime(kept.changedAt, language) })}
+      </Notice>
+    </div>
   );
 }
 
