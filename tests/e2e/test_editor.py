@@ -88,6 +88,9 @@ def test_a_study_from_template_to_second_version(
     page.get_by_role("tab", name="Dry run").click()
     expect(page.get_by_role("row", name="Debriefing")).to_be_visible()
     expect(page.get_by_role("row", name="200 ms added").first).to_be_visible()
+    expect(page.get_by_text("![hand_boxes]")).to_have_count(0)
+    page.get_by_text("What happens").first.click()
+    expect(page.get_by_role("heading", name="What happens")).to_be_visible()
     assert axe(page) == []
     screenshot(page, "editor-dry-run")
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { inLanguage, isText, paragraphs } from "./text";
+import { inLanguage, isText, paragraphs, withoutMarks } from "./text";
 
 describe("texts", () => {
   it("fall back to English and then to any language", () => {
@@ -24,6 +24,12 @@ describe("texts", () => {
       { kind: "picture", name: "t_pose" },
       { kind: "prose", text: "Say ![t_pose] aloud." },
     ]);
+  });
+
+  it("lose their marks in one line", () => {
+    expect(withoutMarks("# Rights\nYou may stop.\n\n![t_pose]\n\n- ask\n- rest")).toBe(
+      "Rights · You may stop. · ask; rest",
+    );
   });
 
   it("keep markup as plain text", () => {

@@ -61,3 +61,12 @@ function joinPoints(lines: readonly string[]): readonly string[] {
   }
   return points;
 }
+
+/** The words of a longer text in one line, without the marks of headings, points and pictures. */
+export const withoutMarks = (text: string): string =>
+  paragraphs(text)
+    .flatMap((part) => {
+      if (part.kind === "picture") return [];
+      return part.kind === "points" ? [part.points.join("; ")] : [part.text];
+    })
+    .join(" · ");

@@ -3,6 +3,8 @@ import { NumberInput, SegmentedControl } from "@mantine/core";
 import { drafts, type Timeline, type TimelineStep } from "@shared/api/drafts";
 import { clockFace, latency, number } from "@shared/format";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
+import { Prose } from "@shared/prose/Prose";
+import { withoutMarks } from "@shared/text";
 import { Notice } from "@shared/ui/Notice";
 import { milliseconds, seconds } from "@shared/units";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
@@ -228,13 +230,29 @@ function Steps({ timeline }: { readonly timeline: Timeline }): JSX.Element {
               </td>
               <td>{parts(step)}</td>
               <td lang={timeline.language}>
-                <div className={classes.words}>{step.text ?? ""}</div>
+                {step.text != null && <ShownText text={step.text} />}
               </td>
             </tr>
           ))}
         </tbody>
       </table>
     </ScrollBox>
+  );
+}
+
+/** A text in two lines, and as the participant reads it once it is opened. */
+function ShownText({ text }: { readonly text: string }): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <details className={classes.shown}>
+      <summary>
+        <span className={classes.words}>{withoutMarks(text)}</span>
+        <span className={classes.less} lang={language}>
+          {t("dryRun.text.less")}
+        </span>
+      </summary>
+      <Prose text={text} t={t} />
+    </details>
   );
 }
 

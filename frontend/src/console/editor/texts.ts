@@ -86,6 +86,7 @@ export const editorEn = {
   "dryRun.time": "Time",
   "dryRun.parts": "Preparation + active + freeze",
   "dryRun.text": "Text shown",
+  "dryRun.text.less": "Show less",
   "dryRun.rule":
     "≈ marks our own estimate: {{opening}} s to find one's way around a page, {{words}} words per minute for reading, {{likert}} s per item on a scale. Pauses, walks back and breaks are not included.",
   "dryRun.broken": "The dry run is not available while there are problems",
@@ -180,6 +181,7 @@ export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
   "dryRun.time": "Dauer",
   "dryRun.parts": "Vorbereitung + aktiv + Stillstand",
   "dryRun.text": "Gezeigter Text",
+  "dryRun.text.less": "Weniger zeigen",
   "dryRun.rule":
     "≈ kennzeichnet unsere eigene Schätzung: {{opening}} s, um sich auf einer Seite zurechtzufinden, {{words}} Wörter pro Minute beim Lesen, {{likert}} s je Frage auf einer Skala. Pausen und Rückwege sind nicht enthalten.",
   "dryRun.broken": "Solange es Probleme gibt, ist kein Probelauf möglich",

@@ -2,6 +2,7 @@
  * All texts of the console in both languages. A page does not import this module, of which it would
  * load both: `textTables.ts` makes a module of each table.
  */
+import { proseDe, proseEn } from "@shared/prose/texts";
 import { verdictsDe, verdictsEn } from "@shared/selfTest/texts";
 import { registryDe, registryEn } from "@shared/session/registries.generated";
 import { avatarChangesDe, avatarChangesEn } from "../avatarChanges/texts";
@@ -105,6 +106,7 @@ export const allEn = {
   ...importsEn,
   ...pilotEn,
   ...preregistrationEn,
+  ...proseEn,
 };
 export const allDe: Readonly<Record<keyof typeof allEn, string>> = {
   ...de,
@@ -157,6 +159,7 @@ export const allDe: Readonly<Record<keyof typeof allEn, string>> = {
   ...importsDe,
   ...pilotDe,
   ...preregistrationDe,
+  ...proseDe,
 };
 
 export const tables = { en: allEn, de: allDe } as const;

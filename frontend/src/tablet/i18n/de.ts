@@ -1,12 +1,14 @@
 /** The participant's texts in German. */
 
 import { formDe } from "@shared/forms/texts";
+import { proseDe } from "@shared/prose/texts";
 import { pageDe } from "@shared/ui/pageTexts";
 import type { en } from "./en";
 
 export const de: Record<keyof typeof en, string> = {
   ...pageDe,
   ...formDe,
+  ...proseDe,
   "pair.title": "Dieses Tablet verbinden",
   "pair.lead":
     "Geben Sie den Code ein, der auf dem Bildschirm der Versuchsleitung steht. Steht ein QR-Code daneben, können Sie stattdessen ihn scannen.",
@@ -31,15 +33,6 @@ export const de: Record<keyof typeof en, string> = {
   "help.called": "Die Versuchsleitung wurde gerufen",
   "help.takeBack": "Nicht mehr nötig",
   "help.failed": "Der Ruf kann gerade nicht gesendet werden. Bitte sprechen Sie uns an.",
-  "picture.equipment":
-    "Ein Headset, ein Controller in jeder Hand, Tracker an der Taille und an beiden Unterschenkeln",
-  "picture.t_pose": "Eine Person steht aufrecht, die Arme zur Seite gestreckt, die Füße zusammen",
-  "picture.mirror":
-    "Der Spiegel vor Ihnen zeigt Ihren Körper, die verbleibende Zeit und die erledigten Aufgaben",
-  "picture.hand_boxes":
-    "Vier offene Kästen in Brusthöhe: Eine Hand berührt die Rückwand in einem davon; darüber ist ein Ziel",
-  "picture.foot_boxes":
-    "Vier offene Kästen am Boden zum Hineintreten, dahinter ein Balken, davor ein Quadrat als Startplatz",
   "waiting.title": "Bitte einen Moment warten",
   "waiting.body":
     "Im Augenblick gibt es hier nichts zu tun. Die Versuchsleitung sagt Ihnen, wenn es weitergeht.",

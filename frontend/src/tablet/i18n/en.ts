@@ -1,11 +1,13 @@
 /** The participant's texts in English; `de.ts` has the same keys. */
 
 import { formEn } from "@shared/forms/texts";
+import { proseEn } from "@shared/prose/texts";
 import { pageEn } from "@shared/ui/pageTexts";
 
 export const en = {
   ...pageEn,
   ...formEn,
+  ...proseEn,
   "pair.title": "Connect this tablet",
   "pair.lead":
     "Enter the code shown on the experimenter's screen. If a QR code is beside it, you can scan that instead.",
@@ -29,14 +31,6 @@ export const en = {
   "help.called": "The experimenter has been called",
   "help.takeBack": "No longer needed",
   "help.failed": "The call cannot be sent right now. Please ask us in person.",
-  "picture.equipment":
-    "A headset, a controller in each hand, and trackers on the waist and both lower legs",
-  "picture.t_pose": "A person standing upright, arms stretched out to the sides, feet together",
-  "picture.mirror": "The mirror in front shows your body, the time left and the tasks completed",
-  "picture.hand_boxes":
-    "Four open boxes at chest height: a hand touches the panel inside one of them; a target is above them",
-  "picture.foot_boxes":
-    "Four open boxes on the floor to step into, with a bar behind them and a square to start from",
   "waiting.title": "Please wait a moment",
   "waiting.body":
     "There is nothing to do here right now. The experimenter will tell you when to continue.",

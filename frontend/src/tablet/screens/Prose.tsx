@@ -1,34 +1,13 @@
-/** A longer text of the study as paragraphs and points; never as HTML. */
-import { type Paragraph, paragraphs } from "@shared/text";
+/** A longer text of the study, and a hint that there is more of it. */
+import { Prose as SharedProse } from "@shared/prose/Prose";
 import { Icon } from "@shared/ui/Icon";
-import { Points } from "@shared/ui/Points";
 import { type JSX, useEffect, useRef, useState } from "react";
 import { useTexts } from "../i18n";
-import { Picture } from "../pictures/Picture";
 import classes from "./screens.module.css";
 
 export function Prose({ text }: { readonly text: string }): JSX.Element {
-  return (
-    <div className={classes.prose}>
-      {paragraphs(text).map((paragraph, index) => (
-        // biome-ignore lint/suspicious/noArrayIndexKey: the parts of a text have no other identifier
-        <Part key={index} paragraph={paragraph} />
-      ))}
-    </div>
-  );
-}
-
-function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
-  switch (paragraph.kind) {
-    case "heading":
-      return <h2>{paragraph.text}</h2>;
-    case "picture":
-      return <Picture name={paragraph.name} />;
-    case "prose":
-      return <p>{paragraph.text}</p>;
-    case "points":
-      return <Points points={paragraph.points} />;
-  }
+  const { t } = useTexts();
+  return <SharedProse text={text} t={t} />;
 }
 
 /** A hint that there is more to read, until the end of the text has been visible. */

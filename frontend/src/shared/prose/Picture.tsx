@@ -1,7 +1,6 @@
 /** A picture of the instructions by its name, with a description for screen readers. */
 import { isPicture, type PictureName } from "@shared/pictures";
 import type { JSX } from "react";
-import { useTexts } from "../i18n";
 import { Person, reaching, standing, stepping, tPose } from "./Person";
 import classes from "./Picture.module.css";
 
@@ -13,8 +12,15 @@ const SCENES: Readonly<Record<PictureName, () => JSX.Element>> = {
   foot_boxes: FootBoxes,
 };
 
-export function Picture({ name }: { readonly name: string }): JSX.Element | null {
-  const { t } = useTexts();
+export type PictureKey = `picture.${PictureName}`;
+
+interface PictureProps {
+  readonly name: string;
+  /** A page's own wording of what a picture shows, which it keeps under these keys. */
+  readonly t: (key: PictureKey) => string;
+}
+
+export function Picture({ name, t }: PictureProps): JSX.Element | null {
   if (!isPicture(name)) return null;
   const Scene = SCENES[name];
   return (
