@@ -38,6 +38,30 @@ DESCRIPTION = {
     ),
 }
 
+PROVENANCE = {
+    "source": (
+        f"Made by the demo lab from the shipped study {ORIGIN}, whose own provenance says what "
+        "follows Karas 2020 and what is ours."
+    ),
+    "licence": "All texts, colours and measures in this file are ours.",
+    "verified": (
+        "Latencies, orders, replicates, the order of steps and the rules of both tasks are those "
+        "of the shipped study. It was never run with people."
+    ),
+    "notes": [
+        (
+            f"Shortened, so that nobody has to wait: every timed phase lasts {PHASE_S} s, with "
+            f"{PAUSE_S} s of preparation before a task and {PAUSE_S} s of freeze after it. The "
+            "texts for participants still name the durations of the shipped study."
+        ),
+        (
+            "Simplified: the avatar is a delayed copy of the body, which passes through edges; "
+            "that of the shipped study follows by forces and collides with them."
+        ),
+    ],
+}
+"""What is true of the demo study; the provenance of the shipped one speaks of its durations."""
+
 
 def demo_code(number: int) -> str:
     """Return the code of a simulated person, counted from 1; they have no names."""
@@ -56,7 +80,8 @@ def demo_yaml() -> str:
 def shortened(origin: Path) -> str:
     """Return the demo lab's version of a study file."""
     study: dict[str, Any] = yaml.safe_load(origin.read_text(encoding="utf-8"))
-    study |= {"key": DEMO_KEY, "title": TITLE, "description": DESCRIPTION, "avatar": "delayed_copy"}
+    study |= {"key": DEMO_KEY, "title": TITLE, "description": DESCRIPTION, "provenance": PROVENANCE}
+    study["avatar"] = "delayed_copy"
     study.pop("avatar_configuration", None)
     procedure = study["procedure"]
     steps = [*procedure["before"], *procedure["block"]["phases"], *procedure["after"]]

@@ -1,6 +1,7 @@
 """Tests of the demo lab: its study, its refusals, and its removal as a whole."""
 
 import json
+import re
 import time
 
 import pytest
@@ -16,6 +17,7 @@ from app.features.people.audit import record
 from app.features.record.demo.demo_study import (
     DEMO_KEY,
     LOADED,
+    PAUSE_S,
     PEOPLE,
     PHASE_S,
     demo_code,
@@ -42,7 +44,7 @@ def _rows(db: Session) -> dict[str, int]:
 
 
 def test_every_phase_of_the_demo_lab_lasts_ten_seconds(fresh_lab: Lab) -> None:
-    """The demo study is the shipped one in phases of 10 s, and its orders suit its people."""
+    """The demo study is the shipped one in phases of 10 s, as it says; its orders fit twelve."""
     with fresh_lab.database.writing() as db:
         build_study(db)
         create_study(db, demo_yaml(), NOW)
@@ -55,6 +57,10 @@ def test_every_phase_of_the_demo_lab_lasts_ten_seconds(fresh_lab: Lab) -> None:
         one.latency_ms for one in shipped.conditions
     ]
     assert PEOPLE % len(orders) == 0
+    said = " ".join((protocol.provenance.verified, *protocol.provenance.notes))
+    assert {step.preparation_s for step in timed if step.preparation_s} == {PAUSE_S}
+    assert f"every timed phase lasts {PHASE_S} s, with {PAUSE_S} s of preparation" in said
+    assert not re.search(r"\b(60|5) s\b|2 min", said)
     assert len({demo_code(number) for number in range(1, PEOPLE + 1)}) == PEOPLE
 
 
