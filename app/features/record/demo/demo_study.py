@@ -68,6 +68,10 @@ def demo_code(number: int) -> str:
     return f"DEMO-{number:02d}"
 
 
+OWN_CODES = frozenset(demo_code(number) for number in range(1, PEOPLE + 1))
+"""Of the people whom the demo lab sends; anybody else in its study is not counted among them."""
+
+
 def demo_yaml() -> str:
     """Return the study's file: the shipped study with short phases and a delayed copy.
 
@@ -134,9 +138,8 @@ def require_only_simulated(db: Session, study: Study) -> None:
         .join(Participant, Participant.id == StudySession.participant_id)
         .where(StudySession.study_id == study.id)
     ).all()
-    own = {demo_code(number) for number in range(1, PEOPLE + 1)}
     people = sum(kind != "simulated" for kind, _, _ in rows)
-    running = sum(status == "active" and code not in own for _, status, code in rows)
+    running = sum(status == "active" and code not in OWN_CODES for _, status, code in rows)
     if people or running:
         raise Conflict(
             "the demo lab has sessions that it did not make, so it is not removed",

@@ -23,6 +23,7 @@ from app.features.people.audit import record
 from app.features.record.demo.demo_study import (
     DEMO_KEY,
     LOADED,
+    OWN_CODES,
     PEOPLE,
     demo_code,
     demo_yaml,
@@ -270,7 +271,6 @@ def _prepared(db: Session, context: AppContext, caller: Caller, now: datetime) -
 
 def _end_broken_off(db: Session, context: AppContext, study: Study, caller: Caller) -> None:
     """Abort the demo lab's own sessions that nobody goes on with, by commands on their record."""
-    own = [demo_code(number) for number in range(1, PEOPLE + 1)]
     broken_off = db.scalars(
         select(StudySession.id)
         .join(Participant, Participant.id == StudySession.participant_id)
@@ -278,7 +278,7 @@ def _end_broken_off(db: Session, context: AppContext, study: Study, caller: Call
             StudySession.study_id == study.id,
             StudySession.kind == "simulated",
             StudySession.status.in_(("planned", "active")),
-            Participant.code.in_(own),
+            Participant.code.in_(OWN_CODES),
         )
         .order_by(StudySession.id)
     )
@@ -319,7 +319,7 @@ def _counts(db: Session, study: Study) -> dict[str, int]:
 
 
 def _codes(db: Session) -> set[str]:
-    """Return the codes of the simulated people who have completed their visit."""
+    """Return which of the demo lab's own people have completed their visit: others do not count."""
     return set(
         db.scalars(
             select(Participant.code)
@@ -329,6 +329,7 @@ def _codes(db: Session) -> set[str]:
                 Study.key == DEMO_KEY,
                 StudySession.kind == "simulated",
                 StudySession.status == "completed",
+                Participant.code.in_(OWN_CODES),
             )
         )
     )

@@ -3,7 +3,6 @@ import type { StorageRoom } from "@shared/api/housekeeping";
 import { bytes } from "@shared/format";
 import { describe, expect, it } from "vitest";
 import { diskShares, roundToTwoDigits } from "../storage/figures";
-import { studyToTry } from "../tour/studyToTry";
 
 describe("sizes", () => {
   it.each([
@@ -57,17 +56,5 @@ describe("the disk", () => {
 
   it("never shows more used by this server than is used", () => {
     expect(diskShares(room({ free_bytes: 90 }))).toMatchObject({ own: 10, other: 0 });
-  });
-});
-
-describe("the study that is tried", () => {
-  const keys = ["another", "reembodiment-latency", "third"];
-  it.each([
-    ["/studies/third/sessions", keys, "third"],
-    ["/sessions/abc", keys, "reembodiment-latency"],
-    ["/studies/gone", ["another"], "another"],
-    ["/", [], null],
-  ])("at %s of %j is %s", (address, studyKeys, chosen) => {
-    expect(studyToTry(address, studyKeys, null)).toBe(chosen);
   });
 });

@@ -28,11 +28,7 @@ export function FirstSteps({ listed }: { readonly listed: readonly StudySummary[
   const load = useLoadDemo();
   const start = useStartTryout();
   const act = useActOnScreen();
-  const study = studyToTry(
-    "/",
-    listed.map(({ key }) => key),
-    lastStudy(),
-  );
+  const study = studyToTry("/", listed, lastStudy());
   const watch = useMutation({
     mutationFn: async (studyKey: string) => {
       const found = await queries.fetchQuery({
@@ -70,7 +66,8 @@ export function FirstSteps({ listed }: { readonly listed: readonly StudySummary[
           permission="tryout"
           isBusy={watch.isPending}
           error={watch.error}
-          onChoose={study === null ? undefined : () => watch.mutate(study)}
+          study={study}
+          onChoose={study === null ? undefined : () => watch.mutate(study.key)}
         />
         <Step
           step="home.act"
@@ -78,8 +75,9 @@ export function FirstSteps({ listed }: { readonly listed: readonly StudySummary[
           permission="run"
           isBusy={act.isPending}
           error={act.error}
+          study={study}
           onChoose={
-            study === null ? undefined : () => act.mutate({ studyKey: study, tab: opened() })
+            study === null ? undefined : () => act.mutate({ studyKey: study.key, tab: opened() })
           }
         />
         <Step
@@ -145,12 +143,14 @@ interface StepProps {
   readonly isFirst?: boolean;
   readonly isBusy: boolean;
   readonly error: Error | null;
+  /** The study that it is done with. */
+  readonly study?: StudySummary | null;
   /** Missing where there is no study to do it with. */
   readonly onChoose: (() => void) | undefined;
 }
 
 function Step(props: StepProps): JSX.Element | null {
-  const { step, icon, permission, isFirst = false, isBusy, error, onChoose } = props;
+  const { step, icon, permission, isFirst = false, isBusy, error, study, onChoose } = props;
   const { t } = useTexts();
   const can = usePermissions();
   if (!can(permission)) return null;
@@ -158,6 +158,9 @@ function Step(props: StepProps): JSX.Element | null {
   return (
     <div className={classes.step}>
       <p>{t(body)}</p>
+      {study != null && (
+        <span className={classes.stepStudy}>{t("home.step.study", { title: study.title })}</span>
+      )}
       {error !== null && <Failure error={error} />}
       <Button
         variant={isFirst ? "filled" : "light"}

@@ -16,6 +16,7 @@ export const homeEn = {
   "home.create": "Create a study",
   "home.create.body":
     "From a template or a file of your own. Every problem is shown with its line while you write.",
+  "home.step.study": "Study: {{title}}",
   "home.today": "Today's sessions",
   "home.today.none": "No session today.",
   "home.at.planned": "created {{time}}",
@@ -71,6 +72,7 @@ export const homeDe: Readonly<Record<keyof typeof homeEn, string>> = {
   "home.create": "Eine Studie anlegen",
   "home.create.body":
     "Aus einer Vorlage oder einer eigenen Datei. Jedes Problem wird beim Schreiben mit seiner Zeile gezeigt.",
+  "home.step.study": "Studie: {{title}}",
   "home.today": "Sitzungen von heute",
   "home.today.none": "Heute keine Sitzung.",
   "home.at.planned": "angelegt {{time}}",

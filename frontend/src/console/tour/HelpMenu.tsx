@@ -2,6 +2,7 @@
 import { ActionIcon, Menu } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { studies } from "@shared/api/endpoints";
+import type { StudySummary } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { describe } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
@@ -32,7 +33,8 @@ export function HelpMenu(): JSX.Element {
   const act = useActOnScreen();
   const tries = can("tryout") || can("run");
   const listed = useQuery({ ...studiesQuery, enabled: opened && tries });
-  const studyKey = studyToTry(address, listed.data?.map(({ key }) => key) ?? [], lastStudy());
+  const study = studyToTry(address, listed.data ?? [], lastStudy());
+  const studyKey = study?.key ?? null;
   const tell = (error: unknown) => {
     const { message, remedy } = describe(error, errors);
     notifications.show({ color: "red", title: message, message: remedy, autoClose: 12_000 });
@@ -87,9 +89,7 @@ export function HelpMenu(): JSX.Element {
             onClick={() => studyKey !== null && begin.mutate(studyKey)}
           >
             {t("help.try")}
-            <span className={classes.hint}>
-              {studyKey === null && listed.isSuccess ? t("help.noStudy") : t("help.try.hint")}
-            </span>
+            <StudyHint study={study} isKnown={listed.isSuccess} hint={t("help.try.hint")} />
           </Menu.Item>
         )}
         {can("run") && (
@@ -101,9 +101,7 @@ export function HelpMenu(): JSX.Element {
             }
           >
             {t("help.act")}
-            <span className={classes.hint}>
-              {studyKey === null && listed.isSuccess ? t("help.noStudy") : t("help.act.hint")}
-            </span>
+            <StudyHint study={study} isKnown={listed.isSuccess} hint={t("help.act.hint")} />
           </Menu.Item>
         )}
         {can("tryout") && isSession(address) && (
@@ -113,6 +111,25 @@ export function HelpMenu(): JSX.Element {
         )}
       </Menu.Dropdown>
     </Menu>
+  );
+}
+
+interface StudyHintProps {
+  readonly study: StudySummary | null;
+  readonly isKnown: boolean;
+  readonly hint: string;
+}
+
+/** What an entry does, and with which study. */
+function StudyHint({ study, isKnown, hint }: StudyHintProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <>
+      <span className={classes.hint}>{study === null && isKnown ? t("help.noStudy") : hint}</span>
+      {study !== null && (
+        <span className={classes.hint}>{t("home.step.study", { title: study.title })}</span>
+      )}
+    </>
   );
 }
 

@@ -27,7 +27,7 @@ from app.features.record.demo.demo_study import (
 from app.features.record.demo.runner import INTERRUPTED, DemoRunner
 from app.features.record.sessions import content_body, contents_of
 from app.features.record.tryout import TryoutRunner
-from app.models import Account, AuditEntry
+from app.models import Account, AuditEntry, StudySession
 from app.platform.access import Caller
 from app.protocol import TIMED_KINDS, compile_plan, sequences
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
@@ -212,3 +212,16 @@ def test_no_login_of_simulated_people_outlives_their_server(fresh_lab: Lab) -> N
     lab.context.part(TryoutRunner).start()
     with lab.database.reading() as db:
         assert [is_active(db, one) for one in tokens] == [False, False, True]
+
+
+def test_only_the_demo_labs_own_people_are_counted(fresh_lab: Lab) -> None:
+    """Somebody else who completes a simulated session there does not count among its people."""
+    lab = fresh_lab
+    with lab.database.writing() as db:
+        _load_one(db)
+        build_session(db, SessionSpec("SIM-0001", kind="simulated"), study=DEMO_KEY)
+        statuses = db.scalars(select(StudySession.status)).all()
+        account = db.query(Account).filter_by(username="admin").one()
+    assert statuses == ["completed", "completed"]
+    caller = Caller(account.id, account.username, account.role)
+    assert lab.context.part(DemoRunner).view(caller).completed == 1
