@@ -8,8 +8,8 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.database import open_database
-from app.features.record.sessions import plan_of, state_of
-from app.features.record.telemetry import certain_active_s, positions_of
+from app.features.record.sessions import certain_active_s, plan_of, state_of
+from app.features.record.telemetry import positions_of
 from app.models import ClientReport, TelemetryBatch, TelemetryChunk
 from app.platform.access import session_by_id
 from app.wire.messages import REPORT_STREAM

@@ -11,6 +11,8 @@ from app.models import Completion, Contact, Phase, PhaseLatency, StudySession
 from app.science.tasks import side_unit, union
 
 _MS_DIGITS = 3
+_LATE_S = 1.0
+"""What a headset records for so long after the last of its frames on disk is no contradiction."""
 
 
 class _Latency(TypedDict):
@@ -45,7 +47,7 @@ def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[Ph
             .group_by(Completion.phase_id)
         ).all()
     )
-    sides = _side_contacts(db, session)
+    sides, until = _side_contacts(db, session), _recorded_until_s(db, session)
     latencies = {
         row.phase_id: row
         for row in db.scalars(select(PhaseLatency).where(PhaseLatency.session_id == session.id))
@@ -63,7 +65,7 @@ def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[Ph
             latency_ms=None if blinded else phase.latency_ms,
             body=None if blinded else phase.body,
             status=phase.status,
-            active_s=phase.active_s,
+            active_s=_active_s(phase, until.get(phase.phase_id, 0.0)),
             **_counts(
                 completions.get(phase.phase_id, 0),
                 sides.get(phase.phase_id, (0, 0.0)),
@@ -75,6 +77,34 @@ def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[Ph
         )
         for phase in phases
     ]
+
+
+def _active_s(phase: Phase, until_s: float) -> float | None:
+    """Return a phase's active time; None where a voided one went on for longer than is known.
+
+    Records made before an interruption was stored with its time say nothing, or when it last
+    paused. `until_s`: the active time until which something was recorded in the phase.
+    """
+    is_unknown = phase.active_s == 0.0 or until_s > phase.active_s + _LATE_S
+    is_voided = phase.status == "voided" and phase.started_at is not None
+    return None if is_voided and is_unknown else phase.active_s
+
+
+def _recorded_until_s(db: Session, session: StudySession) -> dict[int, float]:
+    """Return, for each phase, the active time of its last completion or end of a contact."""
+    until: dict[int, float] = {}
+    for row, time_s in (
+        (Contact, Contact.end_active_s),
+        (Completion, Completion.active_s),
+    ):
+        query = (
+            select(row.phase_id, func.max(time_s))
+            .where(row.session_id == session.id)
+            .group_by(row.phase_id)
+        )
+        for phase_id, last_s in db.execute(query):
+            until[phase_id] = max(until.get(phase_id, 0.0), last_s)
+    return until
 
 
 def _counts(completions: int, sides: tuple[int, float], *, hidden: bool) -> _Counts:

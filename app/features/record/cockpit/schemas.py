@@ -209,6 +209,8 @@ class PhaseView(BaseModel):
     in seconds of active time. Both, and `completions`, are null for blinded readers until the phase
     has ended: the moment at which they rise reveals the latency.
 
+    `active_s` is null for a voided phase in an older record, which does not say how far it was.
+
     The achieved latency is measured once the phase has ended; `movement_s` is null until then. It
     has a 95 % interval; if it cannot be determined, it is null and `latency_reason` says why.
     `latency_off`: whether it deviates by more than 10 ms and more than one frame, which is all that
@@ -223,7 +225,7 @@ class PhaseView(BaseModel):
     latency_ms: float | None
     body: str | None
     status: PhaseStatus
-    active_s: float
+    active_s: float | None
     completions: int | None
     side_contacts: int | None
     side_contact_s: float | None

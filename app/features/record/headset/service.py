@@ -24,13 +24,13 @@ from app.features.record.sessions import (
     content_body,
     contents_of,
     plan_of,
+    reached_active_s,
     require_capture,
     state_of,
 )
 from app.features.record.telemetry import (
     abilities_of,
     assign_epoch,
-    certain_active_s,
     is_assigned_epoch,
     positions_of,
 )
@@ -317,10 +317,7 @@ def _phase_order(
         freeze_s=step.freeze_s or 0.0,
         # A headset that takes over in mid-phase resumes here, even if the loss of the other is
         # unnoticed.
-        active_s=max(
-            phase.active_s,
-            min(certain_active_s(db, session.id, phase.phase_id), step.duration_s or 0.0),
-        ),
+        active_s=reached_active_s(db, session.id, plan, state) or 0.0,
         completions=completions or 0,
         pausing=phase.pausing,
         resuming=phase.resuming,

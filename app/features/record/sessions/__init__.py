@@ -1,5 +1,6 @@
 """Sessions: their event log, their state, and the commands that change it."""
 
+from app.features.record.sessions.active_time import certain_active_s, reached_active_s
 from app.features.record.sessions.avatar_changes import (
     AVATAR_CHANGE,
     AvatarInForce,
@@ -141,6 +142,7 @@ __all__ = [
     "avatar_of_phase",
     "avatars_of_phase",
     "canonical",
+    "certain_active_s",
     "changed_phases",
     "changes_from",
     "choose_language",
@@ -161,6 +163,7 @@ __all__ = [
     "plan_of",
     "plans_of",
     "protocol_of_session",
+    "reached_active_s",
     "read_plan",
     "refusal",
     "require_capture",

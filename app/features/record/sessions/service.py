@@ -21,6 +21,7 @@ from app.features.design.studies import (
 )
 from app.features.movement.avatar import version_of
 from app.features.record.ledger import find_or_add_participant, open_attempt, slot_of, take_slot
+from app.features.record.sessions.active_time import with_active_time
 from app.features.record.sessions.closed_sessions import require_running
 from app.features.record.sessions.engine import (
     Command,
@@ -340,6 +341,7 @@ def apply_command(
         ) from refusal
     if not events:
         return Applied(session, state, ())
+    events = with_active_time(db, session.id, plan, state, events)
     append_events(
         db,
         session_id=session.id,

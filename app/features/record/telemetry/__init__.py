@@ -16,7 +16,6 @@ from app.features.record.telemetry.positions import (
     Outcome,
     abilities_of,
     assign_epoch,
-    certain_active_s,
     is_assigned_epoch,
     positions_of,
 )
@@ -53,7 +52,6 @@ __all__ = [
     "TrialEnd",
     "abilities_of",
     "assign_epoch",
-    "certain_active_s",
     "concatenate",
     "decode_piece",
     "epochs_of",

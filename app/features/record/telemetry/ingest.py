@@ -15,8 +15,14 @@ from sqlalchemy.orm import Session
 
 from app.features.record.alarms import Change, Condition, store_change
 from app.features.record.doubts import OBSERVED
-from app.features.record.sessions import HeadsetLost, apply_command, protocol_of_session, state_of
-from app.features.record.telemetry.positions import Outcome, Positions, certain_active_s
+from app.features.record.sessions import (
+    HeadsetLost,
+    apply_command,
+    certain_active_s,
+    protocol_of_session,
+    state_of,
+)
+from app.features.record.telemetry.positions import Outcome, Positions
 from app.models import ClockProbe, Phase, TelemetryBatch, new_id
 from app.platform.access import session_by_id
 from app.platform.context import AppContext

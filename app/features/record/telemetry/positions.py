@@ -6,7 +6,7 @@ from datetime import datetime
 from itertools import count
 from typing import Any, cast
 
-from sqlalchemy import Table, func, select
+from sqlalchemy import Table, select
 from sqlalchemy.orm import Session
 
 from app.features.record.doubts import exceeds_possible
@@ -171,16 +171,6 @@ def abilities_of(db: Session, session_id: str) -> dict[int, frozenset[str]]:
         for epoch, abilities in db.execute(query)
         if abilities is not None
     }
-
-
-def certain_active_s(db: Session, session_id: str, phase_id: int) -> float:
-    """Return the greatest active time of a phase that is on disk."""
-    stored = db.scalar(
-        select(func.max(TelemetryStream.active_s)).where(
-            TelemetryStream.session_id == session_id, TelemetryStream.phase_id == phase_id
-        )
-    )
-    return stored or 0.0
 
 
 @dataclass

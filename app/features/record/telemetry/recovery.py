@@ -5,8 +5,7 @@ from sqlalchemy import select
 from app.database import referenced_row
 from app.features.design.studies import protocol_of
 from app.features.record.alarms import PERSISTENT, clear_all, sessions_with_open_alarms
-from app.features.record.sessions import HeadsetLost, apply_command, state_of
-from app.features.record.telemetry.positions import certain_active_s
+from app.features.record.sessions import HeadsetLost, apply_command, certain_active_s, state_of
 from app.features.record.telemetry.trials import forget_trial
 from app.models import StudySession, StudyVersion
 from app.platform.access import session_by_id

@@ -9316,6 +9316,8 @@ export interface components {
          *     in seconds of active time. Both, and `completions`, are null for blinded readers until the phase
          *     has ended: the moment at which they rise reveals the latency.
          *
+         *     `active_s` is null for a voided phase in an older record, which does not say how far it was.
+         *
          *     The achieved latency is measured once the phase has ended; `movement_s` is null until then. It
          *     has a 95 % interval; if it cannot be determined, it is null and `latency_reason` says why.
          *     `latency_off`: whether it deviates by more than 10 ms and more than one frame, which is all that
@@ -9329,7 +9331,7 @@ export interface components {
             /** Achieved Low Ms */
             readonly achieved_low_ms: number | null;
             /** Active S */
-            readonly active_s: number;
+            readonly active_s: number | null;
             /** Attempt */
             readonly attempt: number;
             /** Body */

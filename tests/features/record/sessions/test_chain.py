@@ -1,5 +1,6 @@
 """Tests of the hash chain of the event log, which reveals every change to it."""
 
+import json
 from collections.abc import Callable
 from datetime import timedelta
 from typing import Any
@@ -11,7 +12,8 @@ from sqlalchemy.orm import Session
 from app.features.record.sessions.engine import evolve, initial_state
 from app.features.record.sessions.journal import ChainCheck, event_of, events_of, verify_chain
 from app.features.record.sessions.service import plan_of, state_of
-from app.models import Phase, SessionEvent, StudySession
+from app.models import Phase, SessionEvent, StudySession, TelemetryStream
+from tests.features.builders import NOW
 from tests.features.lab import Lab
 
 CANARY = "canary-7f3a"
@@ -181,6 +183,47 @@ def test_phase_rows_follow_the_events(lab: Lab) -> None:
         (phase,) = db.scalars(select(Phase).where(Phase.session_id == view["id"]))
     assert (phase.phase_id, phase.status, phase.active_s) == (1, "voided", 0.0)
     assert phase.ended_at is not None
+
+
+def test_an_interrupted_phase_keeps_the_active_time_that_it_had(lab: Lab) -> None:
+    """Its row, its event and the folded state say how far the stored frames were."""
+    view = lab.skip_to(lab.join(), "free_roam")
+    lab.context.hub.headset_joined(view["id"])
+    view = lab.command(view, "begin_phase")
+    with lab.database.writing() as db:
+        db.add(_stream(view["id"], phase_id=1, active_s=12.5))
+    lab.command(view, "skip", reason="headset fell off")
+    with lab.database.reading() as db:
+        (phase,) = db.scalars(select(Phase).where(Phase.session_id == view["id"]))
+        (voided,) = (row for row in events_of(db, view["id"]) if row.type == "phase_voided")
+        (past,) = state_of(db.get_one(StudySession, view["id"])).ended_phases
+    assert phase.active_s == json.loads(voided.payload)["active_s"] == past.active_s == 12.5
+
+
+def test_an_older_record_does_not_say_how_far_an_interrupted_phase_was(lab: Lab) -> None:
+    """Where the event has no active time, the page gets none, instead of the last one known."""
+    view = lab.skip_to(lab.join(), "free_roam")
+    lab.context.hub.headset_joined(view["id"])
+    view = lab.command(view, "begin_phase")
+    view = lab.command(view, "skip", reason="headset fell off")
+    assert view["phases"][0]["active_s"] == 0.0
+    with lab.database.writing() as db:
+        (phase,) = db.scalars(select(Phase).where(Phase.session_id == view["id"]))
+        phase.started_at = phase.prepared_at
+    assert lab.view(view["id"])["phases"][0]["active_s"] is None
+
+
+def _stream(session_id: str, *, phase_id: int, active_s: float) -> TelemetryStream:
+    """Return the position of a stream whose newest frame is of a phase at an active time."""
+    return TelemetryStream(
+        session_id=session_id,
+        stream="actual",
+        epoch=1,
+        phase_id=phase_id,
+        active_s=active_s,
+        first_at=NOW,
+        last_at=NOW,
+    )
 
 
 def _demographics(lab: Lab, session_id: str) -> dict[str, Any]:

@@ -184,11 +184,15 @@ class PhaseEnded(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseVoided(Event):
-    """The phase no longer counts (redo, skip, abort, withdraw); its data are retained."""
+    """The phase no longer counts (redo, skip, abort, withdraw); its data are retained.
+
+    `active_s`: how far it was if it was interrupted; null if it had ended, and in older records.
+    """
 
     type = "phase_voided"
     phase_id: int
     cause: str
+    active_s: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

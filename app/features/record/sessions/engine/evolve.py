@@ -239,7 +239,13 @@ def _end_phase(state: SessionState, event: e.PhaseEnded) -> SessionState:
 
 def _void_phase(state: SessionState, event: e.PhaseVoided) -> SessionState:
     if state.phase is not None and state.phase.phase_id == event.phase_id:
-        voided = replace(state.phase, status=PhaseStatus.VOIDED, pausing=False, resuming=False)
+        voided = replace(
+            state.phase,
+            status=PhaseStatus.VOIDED,
+            active_s=state.phase.active_s if event.active_s is None else event.active_s,
+            pausing=False,
+            resuming=False,
+        )
         left = _without_study_changes(state)
         return replace(left, phase=None, ended_phases=(*state.ended_phases, voided))
     return replace(

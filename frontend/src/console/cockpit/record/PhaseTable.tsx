@@ -101,7 +101,7 @@ function PhaseRow({
       <td>
         <AchievedLatency phase={phase} />
       </td>
-      <td>{number(phase.active_s, language, 1)} s</td>
+      <td>{phase.active_s === null ? "–" : `${number(phase.active_s, language, 1)} s`}</td>
       <td>{phase.completions ?? "–"}</td>
       {hasBoxes && (
         <>
