@@ -3,6 +3,7 @@
 from app.models.accounts import (
     PURPOSES,
     ROLES,
+    SERVERS_OWN,
     Account,
     AuditEntry,
     AuditHead,
@@ -49,6 +50,7 @@ __all__ = [
     "KINDS",
     "PURPOSES",
     "ROLES",
+    "SERVERS_OWN",
     "Account",
     "AlarmRow",
     "Answer",

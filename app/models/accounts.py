@@ -10,8 +10,10 @@ from app.database import Base
 from app.models.types import Id, UtcDateTime, UtcTime
 
 ROLES = ("admin", "experimenter", "operator", "analyst")
-PURPOSES = ("browser", "script", "demo", "tryout")
-"""Of logins; those of `demo` and `tryout` belong to processes that end with the server."""
+SERVERS_OWN = ("demo", "tryout")
+"""Purposes of logins that the server gives to its own rehearsals; they end with the server."""
+PURPOSES = ("browser", "script", *SERVERS_OWN)
+"""Of logins."""
 
 
 class Account(Base):

@@ -19,6 +19,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import NotFound
 from app.models import (
+    SERVERS_OWN,
     Account,
     CopyMade,
     SessionEvent,
@@ -38,22 +39,32 @@ _LOCKED_BY_ID = _BY_ID.with_for_update(key_share=True)
 
 @dataclass(frozen=True)
 class Caller:
-    """A signed-in person of the lab."""
+    """A signed-in person of the lab.
+
+    `is_script`: it is a rehearsal that the server runs for that person.
+    """
 
     account_id: str
     username: str
     role: str
     all_studies: bool = True
+    is_script: bool = False
 
     @property
     def actor(self) -> str:
-        """The caller's name in the event log."""
-        return f"account:{self.username}"
+        """The caller's name in the event log and in the audit trail."""
+        return f"{'script' if self.is_script else 'account'}:{self.username}"
 
 
-def caller_of(account: Account) -> Caller:
-    """Return the caller for an account."""
-    return Caller(account.id, account.username, account.role, account.all_studies)
+def caller_of(account: Account, purpose: str = "browser") -> Caller:
+    """Return the caller for an account, by the purpose of the login that it uses."""
+    return Caller(
+        account.id,
+        account.username,
+        account.role,
+        account.all_studies,
+        is_script=purpose in SERVERS_OWN,
+    )
 
 
 def visible_to(caller: Caller) -> ColumnElement[bool]:

@@ -18,7 +18,7 @@ from app.platform.access import Caller, caller_of, require_object
 from app.platform.admission import LOGIN_COOKIE, TABLET_COOKIE, bearer_token
 from app.platform.context import AppContext
 from app.platform.policy import HEADSET, TABLET, allowed
-from app.platform.tokens import account_of_token, device_of_token, read_cookie
+from app.platform.tokens import device_of_token, login_of_token, read_cookie
 
 API_PREFIX = "/api"
 ACCOUNT_HEADER = "x-reembody-account"
@@ -128,7 +128,8 @@ def signed_in_caller(request: HTTPConnection, context: Context) -> Caller:
     if not token:
         raise NotSignedIn("you are not signed in", remedy="Sign in first.")
     with context.database.reading() as db:
-        caller = caller_of(account_of_token(db, token, context.clock.utc_now()))
+        login, account = login_of_token(db, token, context.clock.utc_now())
+        caller = caller_of(account, login.purpose)
     if request.headers.get(ACCOUNT_HEADER, caller.account_id) != caller.account_id:
         raise OtherAccount(
             "another account has signed in in this browser since this page was opened",

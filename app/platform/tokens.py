@@ -32,13 +32,18 @@ def hash_token(token: str) -> str:
 
 def account_of_token(db: Session, token: str, now: datetime) -> Account:
     """Return the account of a login; raise NotSignedIn if it is unknown, expired or revoked."""
+    return login_of_token(db, token, now)[1]
+
+
+def login_of_token(db: Session, token: str, now: datetime) -> tuple[LoginToken, Account]:
+    """Return a login and its account; raise NotSignedIn as `account_of_token` does."""
     row = db.get(LoginToken, hash_token(token))
     if row is None or row.revoked_at is not None or row.expires_at <= now:
         raise NotSignedIn("your sign-in has ended", remedy="Sign in again.")
     account = db.get(Account, row.account_id)
     if account is None or account.disabled_at is not None:
         raise NotSignedIn("the account is closed", remedy="Ask the administrator of the lab.")
-    return account
+    return row, account
 
 
 def device_of_token(db: Session, token: str, kind: str) -> Device:

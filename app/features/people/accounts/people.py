@@ -8,12 +8,17 @@ from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, NotFound
-from app.models import Account, LoginToken, Study, StudyMember
+from app.models import SERVERS_OWN, Account, LoginToken, Study, StudyMember
+
+_BY_PEOPLE = LoginToken.purpose.not_in(SERVERS_OWN)
 
 
 @dataclass(frozen=True)
 class Person:
-    """An account with its studies (keys; empty if it may see all of them) and its active logins."""
+    """An account with its studies (keys; empty if it may see all of them) and its active logins.
+
+    Logins that the server gave to its own rehearsals are not counted: nobody signed in for them.
+    """
 
     account: Account
     studies: tuple[str, ...]
@@ -38,7 +43,7 @@ def person_of(db: Session, account: Account, now: datetime) -> Person:
     active = (LoginToken.revoked_at.is_(None)) & (LoginToken.expires_at > now)
     logins, last = db.execute(
         select(func.count().filter(active), func.max(LoginToken.created_at)).where(
-            LoginToken.account_id == account.id
+            LoginToken.account_id == account.id, _BY_PEOPLE
         )
     ).one()
     return Person(account, tuple(studies), logins, last)
@@ -98,7 +103,7 @@ def reopen_account(account: Account) -> None:
 
 
 def end_logins(db: Session, account: Account, now: datetime, *, keep: str | None = None) -> int:
-    """End the logins of an account, and return how many were active.
+    """End the logins of an account, and return how many of people's were active.
 
     The login whose token has the hash `keep` is left open.
     """
@@ -107,7 +112,8 @@ def end_logins(db: Session, account: Account, now: datetime, *, keep: str | None
         LoginToken.revoked_at.is_(None),
         LoginToken.token_hash != (keep or ""),
     )
-    active = db.scalar(select(func.count()).where(*matching, LoginToken.expires_at > now)) or 0
+    counted = (*matching, _BY_PEOPLE, LoginToken.expires_at > now)
+    active = db.scalar(select(func.count()).where(*counted)) or 0
     db.execute(update(LoginToken).where(*matching).values(revoked_at=now))
     return active
 

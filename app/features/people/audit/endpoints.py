@@ -17,7 +17,8 @@ Name = Annotated[str | None, Query(max_length=100)]
 class AuditView(BaseModel):
     """An entry of the audit trail.
 
-    `actor` is `account:NAME`, a device, or `nobody` for a request without a login.
+    `actor` is `account:NAME`, `script:NAME` for a rehearsal that the server ran for that account, a
+    device, or `nobody` for a request without a login.
     """
 
     seq: int

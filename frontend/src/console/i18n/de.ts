@@ -32,6 +32,7 @@ export const de: Record<keyof typeof en, string> = {
   "app.theme.dark": "Dunkle Darstellung",
   "app.theme.light": "Helle Darstellung",
   "app.language": "English",
+  "actor.script": "Skript, für {{name}}",
   "app.skip": "Zum Inhalt springen",
   "error.unreachable": "Der Server antwortet nicht.",
   "error.unreachableRemedy":

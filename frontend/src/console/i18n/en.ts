@@ -31,6 +31,7 @@ export const en = {
   "app.theme.dark": "Dark appearance",
   "app.theme.light": "Light appearance",
   "app.language": "Deutsch",
+  "actor.script": "script, for {{name}}",
   "app.skip": "Skip to content",
   "error.unreachable": "The server is not responding.",
   "error.unreachableRemedy":

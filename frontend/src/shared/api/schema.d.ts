@@ -4029,7 +4029,8 @@ export interface components {
          * AuditView
          * @description An entry of the audit trail.
          *
-         *     `actor` is `account:NAME`, a device, or `nobody` for a request without a login.
+         *     `actor` is `account:NAME`, `script:NAME` for a rehearsal that the server ran for that account, a
+         *     device, or `nobody` for a request without a login.
          */
         readonly AuditView: {
             /** Action */

@@ -17,7 +17,7 @@ from app.main import create_app
 from app.models import Account
 from app.platform.tokens import account_of_token
 from app.settings import Settings
-from tests.features.lab import PASSWORD, Lab, error, ok, running_lab
+from tests.features.lab import PASSWORD, STUDY, Lab, error, ok, running_lab
 
 
 def log_in(client: TestClient, username: str = "admin", password: str = PASSWORD) -> Response:
@@ -240,3 +240,29 @@ def _token(lab: Lab) -> str:
         admin = db.query(Account).filter_by(username="admin").one()
         now = datetime.now(UTC)
         return issue_token(db, admin, purpose="script", now=now, hours=1.0).token
+
+
+def test_a_rehearsal_of_the_server_is_no_sign_in_of_the_person(fresh_lab: Lab) -> None:
+    """Its login is neither counted nor the last one, and its actions say that it was a script."""
+    lab = fresh_lab
+    (before,) = ok(lab.operator.get("/api/accounts"))
+    with lab.database.writing() as db:
+        account = db.query(Account).filter_by(username="admin").one()
+        later = Clock().utc_now() + timedelta(minutes=1)
+        login = issue_token(db, account, purpose="tryout", now=later, hours=1.0)
+    script = lab.stranger()
+    script.headers["authorization"] = f"Bearer {login.token}"
+    path = f"/api/studies/{STUDY}/sessions"
+    session_id = ok(script.post(path, json={"kind": "simulated"}))["id"]
+    view = ok(script.get(f"/api/sessions/{session_id}"))
+    start = {
+        "type": "start",
+        "command_id": "the-script-starts",
+        "expected_version": view["version"],
+    }
+    ok(script.post(f"/api/sessions/{session_id}/commands", json=start))
+    (after,) = ok(lab.operator.get("/api/accounts"))
+    assert (after["logins"], after["last_login_at"]) == (before["logins"], before["last_login_at"])
+    assert {event["by"] for event in lab.events(session_id)} == {"script:admin"}
+    ok(lab.operator.delete(f"/api/accounts/{after['id']}/logins"))
+    error(script.get("/api/studies"), 401, "not_signed_in")

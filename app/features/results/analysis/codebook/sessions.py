@@ -157,7 +157,10 @@ EVENTS: tuple[Column, ...] = (
     *session_columns("events"),
     _E.integer("seq", "Place in the session's log.", levels="1 and up"),
     _E.text("type", "What happened."),
-    _E.text("actor", "Who caused it: an account, a device or the system."),
+    _E.text(
+        "actor",
+        "Who caused it: an account, a script that the server ran for one, a device or the system.",
+    ),
     _E.time("recorded_at_utc", "When it was recorded."),
     _E.number("monotonic_s", "The server's monotonic clock, for durations between events.", "s"),
     _E.integer("phase_id", "The phase it is about.", levels="1 and up"),

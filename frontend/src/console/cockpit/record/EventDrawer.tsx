@@ -71,7 +71,7 @@ function EventTable({ events, session }: EventTableProps): JSX.Element {
                 <div className={classes.empty}>{detailsOf(event, stepWords)}</div>
                 {event.type === "avatar_changed" && <Changed event={event} />}
               </td>
-              <td className={classes.nowrap}>{actorName(event.by)}</td>
+              <td className={classes.nowrap}>{actorName(event.by, t)}</td>
             </tr>
           ))}
         </tbody>
@@ -132,5 +132,8 @@ function readable(name: string, value: unknown): string {
 }
 
 /** The name of an actor: `account:admin` is admin; a device is called by its kind. */
-const actorName = (by: string): string =>
-  by.startsWith("account:") ? by.slice("account:".length) : (by.split(":")[0] ?? by);
+function actorName(by: string, t: ReturnType<typeof useTexts>["t"]): string {
+  const [kind = by, name = ""] = by.split(":");
+  if (kind === "account") return name;
+  return kind === "script" ? t("actor.script", { name }) : kind;
+}

@@ -153,6 +153,12 @@ function Entries({ entries, more, loading, onMore }: EntriesProps): JSX.Element 
   );
 }
 
+function who(actor: string, t: ReturnType<typeof useTexts>["t"]): string {
+  if (actor === "nobody") return "–";
+  const script = /^script:(.*)$/.exec(actor)?.[1];
+  return script === undefined ? actorName(actor) : t("actor.script", { name: script });
+}
+
 function Row({ entry }: { readonly entry: AuditEntry }): JSX.Element {
   const { t, language } = useTexts();
   return (
@@ -161,7 +167,7 @@ function Row({ entry }: { readonly entry: AuditEntry }): JSX.Element {
         {entry.seq}
       </td>
       <td className={`${classes.nowrap} numbers`}>{dateTime(entry.at, language)}</td>
-      <td className={classes.name}>{entry.actor === "nobody" ? "–" : actorName(entry.actor)}</td>
+      <td className={classes.name}>{who(entry.actor, t)}</td>
       <td>
         {sentences(entry, t).map((sentence) => (
           <div key={sentence}>{sentence}</div>
