@@ -98,6 +98,20 @@ describe("the guidance", () => {
     expect(guidance(view(at(4), []))).toBe("guide.task.foot");
     expect(guidance(view(null, [], { status: "withdrawn" }))).toBe("guide.withdrawn");
   });
+
+  it("names before the start only the devices that are missing", () => {
+    const before = (...connected: readonly string[]) =>
+      guidance(
+        view(null, [], {
+          status: "planned",
+          devices: connected.map((kind) => ({ kind, connected: true })) as never,
+        }),
+      );
+    expect(before()).toBe("guide.planned");
+    expect(before("tablet")).toBe("guide.planned.headset");
+    expect(before("headset")).toBe("guide.planned.tablet");
+    expect(before("tablet", "headset")).toBe("guide.planned.connected");
+  });
 });
 
 describe("a companion who is not seen", () => {

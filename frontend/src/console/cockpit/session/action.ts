@@ -27,13 +27,22 @@ export function guidance(session: SessionView): Key {
   const step = currentStep(session);
   if (session.status === "completed" && session.simulated) return "guide.completed.simulated";
   if (session.status !== "active" && session.status !== "planned") return `guide.${session.status}`;
-  if (step === null || session.current === null) return "guide.planned";
+  if (step === null || session.current === null) return guidanceBeforeStart(session);
   const { status } = session.current;
   if (isCrossing(step) && (status === "preparing" || status === "running")) {
     return `guide.${status}.road`;
   }
   if (status !== "ready") return `guide.${status}`;
   return isForm(step) && step.forms === "headset" ? "step.askInHeadset" : stepText("guide", step);
+}
+
+/** Which devices are missing before the start, if any. */
+function guidanceBeforeStart(session: SessionView): Key {
+  const hasTablet = isConnected(session, "tablet");
+  const hasHeadset = isConnected(session, "headset");
+  if (hasTablet && hasHeadset) return "guide.planned.connected";
+  if (hasTablet) return "guide.planned.headset";
+  return hasHeadset ? "guide.planned.tablet" : "guide.planned";
 }
 
 /** Why the headset shows no companion now; `moment`: for something that the steps do not tell. */

@@ -50,7 +50,9 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
       {step === null ? (
         <h2 className={classes.title}>
           {t(
-            session.status === "planned" && !isReady ? "session.open" : `session.${session.status}`,
+            session.status === "planned" && !(isReady && hasDevices(session))
+              ? "session.open"
+              : `session.${session.status}`,
           )}
         </h2>
       ) : (
@@ -101,6 +103,9 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
 
 /** The id of the sentence that says why the large button is disabled. */
 const REASON = "step-no-headset";
+
+const hasDevices = (session: SessionView): boolean =>
+  isConnected(session, "tablet") && isConnected(session, "headset");
 
 function StepPosition({ session, step }: { readonly session: SessionView; readonly step: Step }) {
   const texts = useTexts();

@@ -16,6 +16,12 @@ export const sessionEn = {
   "change.notes_other": "{{count}} notes were added.",
   "change.other": "The session was changed.",
   "guide.planned": "Pair the tablet and the headset, then start when the participant is ready.",
+  "guide.planned.tablet":
+    "The headset is connected. Pair the tablet, then start when the participant is ready.",
+  "guide.planned.headset":
+    "The tablet is connected. Pair the headset, then start when the participant is ready.",
+  "guide.planned.connected":
+    "Tablet and headset are connected. Start when the participant is ready.",
   "guide.completed.simulated": "Everything is stored. Nobody took part.",
   "guide.completed": "Everything is stored. Thank the participant.",
   "guide.aborted": "The session was ended early. Its data are kept and its slot is free again.",
@@ -114,6 +120,12 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "change.other": "Die Sitzung wurde geändert.",
   "guide.planned": "Koppeln Sie Tablet und Headset und starten Sie, wenn die Person bereit ist.",
   "guide.completed.simulated": "Alles ist gespeichert. Niemand hat teilgenommen.",
+  "guide.planned.tablet":
+    "Das Headset ist verbunden. Koppeln Sie noch das Tablet und starten Sie, wenn die Person bereit ist.",
+  "guide.planned.headset":
+    "Das Tablet ist verbunden. Koppeln Sie noch das Headset und starten Sie, wenn die Person bereit ist.",
+  "guide.planned.connected":
+    "Tablet und Headset sind verbunden. Starten Sie, wenn die Person bereit ist.",
   "guide.completed": "Alles ist gespeichert. Danken Sie der Person.",
   "guide.aborted":
     "Die Sitzung wurde vorzeitig beendet. Ihre Daten bleiben erhalten, ihr Platz ist wieder frei.",
