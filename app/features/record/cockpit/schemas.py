@@ -269,6 +269,7 @@ class SessionSummary(BaseModel):
     created_at: datetime
     started_at: datetime | None
     ended_at: datetime | None
+    end_reason: str | None = None
     shortfalls: list[Shortfall] | None
 
 

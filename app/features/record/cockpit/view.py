@@ -13,6 +13,7 @@ from app.features.design.studies import instrument_for, protocol_of, versions_of
 from app.features.record.alarms import AlarmView, open_alarms
 from app.features.record.cockpit.avatar_changes import avatar_changes_view
 from app.features.record.cockpit.calibration import calibration_view, goals_view
+from app.features.record.cockpit.end_reasons import end_reasons
 from app.features.record.cockpit.phase_views import phase_views
 from app.features.record.cockpit.schemas import (
     CurrentView,
@@ -71,7 +72,8 @@ def session_view(
     state, plan, slot = state_of(session), plan_of(db, session), slot_of(db, session)
     reasons, alarms = _reasons(db, session), open_alarms(db, session.id)
     order = _HIDDEN_ORDER if blinded else _order(protocol, slot.sequence)
-    listed = _listed(session, version.number, _code(db, session), order)
+    reason = end_reasons(db, StudySession.id == session.id).get(session.id)
+    listed = _listed(session, version.number, _code(db, session), order, end_reason=reason)
     return SessionView(
         **listed.model_dump(exclude={"step"}),
         blinded=blinded,
@@ -142,6 +144,7 @@ def list_sessions(
     versions = {version.id: version for version in versions_of(db, study)}
     hidden = hidden_sessions(db, study, caller)
     steps = _steps_of_running(db, study)
+    end = end_reasons(db, StudySession.study_id == study.id)
     orders: dict[tuple[str, ...], _Order] = {}
     listed = []
     for row in db.execute(query):
@@ -152,7 +155,8 @@ def list_sessions(
             order = orders.get((version.id, *row.sequence)) or orders.setdefault(
                 (version.id, *row.sequence), _order(protocol_of(version), row.sequence)
             )
-        listed.append(_listed(row, version.number, row.code, order, steps.get(row.id)))
+        step, reason = steps.get(row.id), end.get(row.id)
+        listed.append(_listed(row, version.number, row.code, order, step, end_reason=reason))
     return listed
 
 
@@ -229,6 +233,8 @@ def _listed(
     code: str,
     order: _Order,
     step: StepBrief | None = None,
+    *,
+    end_reason: str | None = None,
 ) -> ListedSession:
     """Summarise a session, or a row with the same names of its columns."""
     return ListedSession(
@@ -242,6 +248,7 @@ def _listed(
         created_at=session.created_at,
         started_at=session.started_at,
         ended_at=session.ended_at,
+        end_reason=end_reason,
         shortfalls=(
             None if session.shortfalls is None else list(shortfalls_of(session.shortfalls))
         ),

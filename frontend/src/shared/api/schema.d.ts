@@ -8013,6 +8013,8 @@ export interface components {
              * Format: date-time
              */
             readonly created_at: string;
+            /** End Reason */
+            readonly end_reason?: string | null;
             /** Ended At */
             readonly ended_at: string | null;
             /** Id */
@@ -11218,6 +11220,8 @@ export interface components {
             readonly current: components["schemas"]["CurrentView"] | null;
             /** Devices */
             readonly devices: readonly components["schemas"]["DeviceView"][];
+            /** End Reason */
+            readonly end_reason?: string | null;
             /** Ended At */
             readonly ended_at: string | null;
             readonly goals?: components["schemas"]["GoalsView"] | null;

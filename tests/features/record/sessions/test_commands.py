@@ -173,6 +173,16 @@ def test_the_view_lists_the_allowed_commands(lab: Lab, planned: Json) -> None:
     assert (view["allowed"], view["status"]) == (["note"], "aborted")
 
 
+def test_a_session_that_ended_early_says_why(lab: Lab, planned: Json) -> None:
+    """Its view and the study's list of sessions show the reason, which no other session has."""
+    view = lab.command(lab.command(planned, "start"), "abort", reason="fire alarm")
+    other = lab.command(lab.join(), "start")
+    listed = ok(lab.operator.get(f"/api/studies/{STUDY}/sessions"))
+    of = {one["id"]: one["end_reason"] for one in listed}
+    assert view["end_reason"] == of[view["id"]] == "fire alarm"
+    assert other["end_reason"] is of[other["id"]] is None
+
+
 @pytest.mark.one_engine
 def test_a_reason_is_shown_at_its_step(lab: Lab, planned: Json) -> None:
     """A skipped step is shown with its reason."""

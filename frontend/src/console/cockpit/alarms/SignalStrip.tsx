@@ -49,7 +49,7 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
       aria-label={t("signal.label")}
     >
       {first === undefined ? (
-        <NoAlarm session={session} isRecording={isMoving(signal)} />
+        <NoAlarm session={session} isRecording={isMoving(signal)} hadAlarms={total > 0} />
       ) : (
         <ActiveAlarm alarm={first} session={session} others={alarms.on.length - 1} />
       )}
@@ -92,9 +92,11 @@ const isMoving = (signal: Signal | null): boolean =>
 interface NoAlarmProps {
   readonly session: SessionView;
   readonly isRecording: boolean;
+  /** Whether its list of alarms has any. */
+  readonly hadAlarms: boolean;
 }
 
-function NoAlarm({ session, isRecording }: NoAlarmProps): JSX.Element {
+function NoAlarm({ session, isRecording, hadAlarms }: NoAlarmProps): JSX.Element {
   const { t } = useTexts();
   const ended = session.ended_at !== null;
   if (awaitsHeadset(session)) return <HeadsetAwaited />;
@@ -109,7 +111,7 @@ function NoAlarm({ session, isRecording }: NoAlarmProps): JSX.Element {
       <Icon name={connected && isRecording ? "check" : "info"} size={22} />
       <div className={classes.words} role="status">
         <div className={classes.title}>{t(ended ? "signal.over" : "signal.fine")}</div>
-        <div className={classes.remedy}>{t(ended ? "signal.over.body" : body)}</div>
+        <div className={classes.remedy}>{ended ? hadAlarms && t("signal.over.body") : t(body)}</div>
       </div>
     </div>
   );

@@ -67,6 +67,9 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
       <p className={classes.guide}>
         {t(isAloud(session, step) ? "step.askAloud" : guidance(session))}
       </p>
+      {session.end_reason != null && (
+        <p className={classes.guide}>{t("session.endReason", { reason: session.end_reason })}</p>
+      )}
       {lacksHeadset(session) && (
         <p id={REASON} className={classes.guide}>
           {t("step.noHeadset")}
@@ -101,11 +104,11 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
   );
 }
 
-/** The id of the sentence that says why the large button is disabled. */
-const REASON = "step-no-headset";
-
 const hasDevices = (session: SessionView): boolean =>
   isConnected(session, "tablet") && isConnected(session, "headset");
+
+/** The id of the sentence that says why the large button is disabled. */
+const REASON = "step-no-headset";
 
 function StepPosition({ session, step }: { readonly session: SessionView; readonly step: Step }) {
   const texts = useTexts();

@@ -50,6 +50,7 @@ export const sessionEn = {
   "session.completed": "Session completed",
   "session.aborted": "Session aborted",
   "session.withdrawn": "Participant withdrawn",
+  "session.endReason": "Reason: {{reason}}",
   "step.of": "Step {{number}} of {{total}}",
   "step.block": "Block {{number}} of {{total}}",
   "step.latency": "{{latency}} added",
@@ -119,13 +120,13 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "change.notes_other": "{{count}} Notizen kamen hinzu.",
   "change.other": "Die Sitzung wurde geändert.",
   "guide.planned": "Koppeln Sie Tablet und Headset und starten Sie, wenn die Person bereit ist.",
-  "guide.completed.simulated": "Alles ist gespeichert. Niemand hat teilgenommen.",
   "guide.planned.tablet":
     "Das Headset ist verbunden. Koppeln Sie noch das Tablet und starten Sie, wenn die Person bereit ist.",
   "guide.planned.headset":
     "Das Tablet ist verbunden. Koppeln Sie noch das Headset und starten Sie, wenn die Person bereit ist.",
   "guide.planned.connected":
     "Tablet und Headset sind verbunden. Starten Sie, wenn die Person bereit ist.",
+  "guide.completed.simulated": "Alles ist gespeichert. Niemand hat teilgenommen.",
   "guide.completed": "Alles ist gespeichert. Danken Sie der Person.",
   "guide.aborted":
     "Die Sitzung wurde vorzeitig beendet. Ihre Daten bleiben erhalten, ihr Platz ist wieder frei.",
@@ -153,6 +154,7 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "session.completed": "Sitzung abgeschlossen",
   "session.aborted": "Sitzung abgebrochen",
   "session.withdrawn": "Teilnahme beendet",
+  "session.endReason": "Grund: {{reason}}",
   "step.of": "Schritt {{number}} von {{total}}",
   "step.block": "Block {{number}} von {{total}}",
   "step.latency": "{{latency}} zusätzlich",

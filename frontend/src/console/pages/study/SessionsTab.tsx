@@ -191,6 +191,11 @@ function Row({ session }: { readonly session: SessionSummary }): JSX.Element {
             {session.step.paused && ` · ${t("device.says.paused")}`}
           </span>
         )}
+        {session.end_reason != null && (
+          <span className={classes.sub} title={session.end_reason}>
+            {session.end_reason}
+          </span>
+        )}
         {(session.shortfalls?.length ?? 0) > 0 && (
           <span className={classes.sub}>{t("validity.notValid")}</span>
         )}
