@@ -100,17 +100,17 @@ describe("the guidance", () => {
   });
 
   it("names before the start only the devices that are missing", () => {
-    const before = (...connected: readonly string[]) =>
+    const guideWith = (...connected: readonly string[]) =>
       guidance(
         view(null, [], {
           status: "planned",
           devices: connected.map((kind) => ({ kind, connected: true })) as never,
         }),
       );
-    expect(before()).toBe("guide.planned");
-    expect(before("tablet")).toBe("guide.planned.headset");
-    expect(before("headset")).toBe("guide.planned.tablet");
-    expect(before("tablet", "headset")).toBe("guide.planned.connected");
+    expect(guideWith()).toBe("guide.planned");
+    expect(guideWith("tablet")).toBe("guide.planned.headset");
+    expect(guideWith("headset")).toBe("guide.planned.tablet");
+    expect(guideWith("tablet", "headset")).toBe("guide.planned.connected");
   });
 });
 
