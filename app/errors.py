@@ -117,7 +117,7 @@ class RecordedConflict(Conflict):
 
 
 class StaleVersion(Conflict):
-    """The session has changed since the caller read the version on which the request is based."""
+    """What is to be changed has changed since the caller read the version that they start from."""
 
     code = "stale"
 

@@ -10,11 +10,13 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.database import referenced_row
+from app.errors import StaleVersion
 from app.features.design.studies.comparing import compare_versions
 from app.features.design.studies.drafts.endpoints import router as drafts
 from app.features.design.studies.lifecycle import archive, duplicate, restore
 from app.features.design.studies.schemas import (
     DuplicateRequest,
+    NewVersion,
     StudyDiff,
     StudyFile,
     StudySummary,
@@ -69,10 +71,23 @@ def get_study(key: str, db: Reading, caller: SignedIn) -> StudyView:
 
 @router.post("/studies/{key}/versions", status_code=201)
 def post_version(
-    key: str, file: StudyFile, db: Writing, context: Context, caller: SignedIn
+    key: str, file: NewVersion, db: Writing, context: Context, caller: SignedIn
 ) -> StudyView:
-    """Add a version to a study, unless one with the same content exists."""
+    """Add a version to a study, unless one with the same content exists.
+
+    Raises StaleVersion if somebody has saved another one since this one's editing began.
+    """
     study = study_by_key(db, key)
+    newest = newest_version(db, study)
+    if file.based_on not in (None, newest.number) and newest.source_yaml != file.yaml:
+        raise StaleVersion(
+            f"version {newest.number} was saved after these changes had begun, from version "
+            f"{file.based_on}",
+            value=file.based_on,
+            valid=newest.number,
+            remedy="Look at what changes from the newest version, and take over what should stay; "
+            "saving again puts this text on top of it.",
+        )
     now = context.clock.utc_now()
     version = add_version(db, study, file.yaml, now)
     details = {"version": version.number, "content_hash": version.content_hash}

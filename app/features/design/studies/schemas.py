@@ -22,6 +22,15 @@ class StudyFile(BaseModel):
     yaml: str = Field(max_length=MAX_YAML_CHARACTERS)
 
 
+class NewVersion(StudyFile):
+    """A new version of a study; `based_on`: the newest version when its editing began.
+
+    Without it nothing is checked, as for a file that no editor has opened.
+    """
+
+    based_on: int | None = Field(default=None, ge=1)
+
+
 class VersionView(BaseModel):
     """One version of a study, without its content."""
 

@@ -3,6 +3,7 @@ import { ActionIcon, Anchor, Button, Tabs, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { drafts } from "@shared/api/drafts";
 import { studies } from "@shared/api/endpoints";
+import { ApiError } from "@shared/api/request";
 import type { components } from "@shared/api/schema";
 import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
@@ -31,6 +32,8 @@ interface EditorProps {
   /** The study that gets a new version; null creates a new study. */
   readonly studyKey: string | null;
   readonly title: string;
+  /** The newest version when the editing began; 0 for a new study. */
+  readonly version: number;
   /** The stored text, with which the editing starts; empty for a new study. */
   readonly stored: string;
   /** The text at which there is nothing to keep: the stored one, or the start of a new study. */
@@ -46,7 +49,7 @@ const TABS = ["write", "dryRun", "changes"] as const;
 type Tab = (typeof TABS)[number];
 
 export function Editor(props: EditorProps): JSX.Element {
-  const { studyKey, title, stored, unchanged, notice, onSave } = props;
+  const { studyKey, title, version, stored, unchanged, notice, onSave } = props;
   const { t } = useTexts();
   // The field owns the text: after a save it goes on where it is.
   const [initial] = useState(props.initial);
@@ -63,7 +66,7 @@ export function Editor(props: EditorProps): JSX.Element {
   return (
     <div className={classes.editor}>
       <LeaveGuard unsaved={isChanged} />
-      <Bar draft={draft} studyKey={studyKey} title={title} unsaved={unsaved} onSave={onSave} />
+      <Bar {...{ draft, studyKey, title, version, unsaved, onSave }} />
       {notice}
       <Tabs
         value={tab}
@@ -122,20 +125,31 @@ interface BarProps {
   readonly draft: Draft;
   readonly studyKey: string | null;
   readonly title: string;
+  readonly version: number;
   readonly unsaved: boolean;
   readonly onSave: ((text: string) => void) | undefined;
 }
 
-function Bar({ draft, studyKey, title, unsaved, onSave }: BarProps): JSX.Element {
+function Bar({ draft, studyKey, title, version, unsaved, onSave }: BarProps): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
   const queries = useQueryClient();
+  // Once somebody was told of a newer version, saving again puts this text on top of it.
+  const known = useRef(version);
   const save = useMutation({
     mutationFn: () => {
       onSave?.(draft.text);
-      return studyKey === null ? studies.add(draft.text) : studies.addVersion(studyKey, draft.text);
+      return studyKey === null
+        ? studies.add(draft.text)
+        : studies.addVersion(studyKey, draft.text, known.current);
+    },
+    onError: (error) => {
+      if (error instanceof ApiError && error.code === "stale") {
+        known.current = Number(error.valid);
+      }
     },
     onSuccess: async (study) => {
+      known.current = study.version;
       dropDraft(studyKey ?? NEW_STUDY);
       await queries.invalidateQueries({ queryKey: ["studies"] });
       const saved = t("editor.saved", { version: study.version });

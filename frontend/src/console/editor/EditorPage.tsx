@@ -47,6 +47,7 @@ export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.
           }}
           studyKey={study.key}
           title={study.protocol === null ? study.title : inLanguage(study.protocol.title, language)}
+          version={study.version}
           stored={study.yaml ?? ""}
         />
       )}
@@ -134,13 +135,21 @@ function NewStudy(props: NewStudyProps): JSX.Element {
   // What is kept changes with every key: the editor begins once.
   const [{ begin, initial }] = useState(props);
   return (
-    <Editor studyKey={null} title={t("new.title")} stored="" unchanged={begin} initial={initial} />
+    <Editor
+      studyKey={null}
+      title={t("new.title")}
+      version={0}
+      stored=""
+      unchanged={begin}
+      initial={initial}
+    />
   );
 }
 
 interface EditorWithDraftProps {
   readonly studyKey: string;
   readonly title: string;
+  readonly version: number;
   readonly stored: string;
   /** Called with the text that is about to be stored. */
   readonly onSave: (text: string) => void;
@@ -149,7 +158,13 @@ interface EditorWithDraftProps {
 /**
  * The editor, starting with the unsaved changes kept from an earlier visit, which can be discarded.
  */
-function EditorWithDraft({ studyKey, title, stored, onSave }: EditorWithDraftProps): JSX.Element {
+function EditorWithDraft({
+  studyKey,
+  title,
+  version,
+  stored,
+  onSave,
+}: EditorWithDraftProps): JSX.Element {
   const { t, language } = useTexts();
   const [kept] = useState(() => keptDraft(studyKey));
   const [dropped, setDropped] = useState(false);
@@ -161,6 +176,7 @@ function EditorWithDraft({ studyKey, title, stored, onSave }: EditorWithDraftPro
       onSave={onSave}
       studyKey={studyKey}
       title={title}
+      version={version}
       stored={stored}
       unchanged={stored}
       initial={restored ? kept.text : stored}

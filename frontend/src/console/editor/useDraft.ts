@@ -6,6 +6,7 @@
 import { redo, undo } from "@codemirror/commands";
 import { useDebouncedValue } from "@mantine/hooks";
 import { drafts } from "@shared/api/drafts";
+import { Unreachable } from "@shared/api/request";
 import type { CheckResult } from "@shared/api/types";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { type RefObject, useRef, useState } from "react";
@@ -13,6 +14,8 @@ import { type Change, type Path, pathText } from "./paths";
 import { replaceText, showLine, type YamlText } from "./YamlField";
 
 const PAUSE_MS = 350;
+/** How long after a server that did not respond the request is sent again. */
+const AGAIN_MS = 2000;
 const NO_PROBLEMS: CheckResult["problems"] = [];
 
 export interface Draft {
@@ -46,15 +49,21 @@ export function useDraft(initial: string): Draft {
     placeholderData: keepPreviousData,
     staleTime: Number.POSITIVE_INFINITY,
     gcTime: 30_000,
+    refetchInterval: ({ state }) => (state.error instanceof Unreachable ? AGAIN_MS : false),
   });
   const upToDate = checked === text && !query.isPlaceholderData && query.data !== undefined;
   const change = (changes: readonly Change[]) => {
     queue.current = queue.current.then(async () => {
-      try {
-        await apply(field, changes);
-        setFailure(null);
-      } catch (error) {
-        setFailure(error);
+      // Without a connection the field in the form keeps what was entered, and so does this.
+      while (field.current !== null) {
+        try {
+          await apply(field, changes);
+          return setFailure(null);
+        } catch (error) {
+          setFailure(error);
+          if (!(error instanceof Unreachable)) return;
+          await new Promise((goOn) => setTimeout(goOn, AGAIN_MS));
+        }
       }
     });
   };

@@ -57,9 +57,13 @@ export const studies = {
   check: (yaml: string) =>
     answer<CheckResult>(server.POST("/api/studies/check", { body: { yaml } })),
   add: (yaml: string) => answer<StudyDetail>(server.POST("/api/studies", { body: { yaml } })),
-  addVersion: (key: string, yaml: string) =>
+  /** `basedOn`: the newest version when the editing began; refused if there is a newer one. */
+  addVersion: (key: string, yaml: string, basedOn: number | null = null) =>
     answer<StudyDetail>(
-      server.POST("/api/studies/{key}/versions", { ...study(key), body: { yaml } }),
+      server.POST("/api/studies/{key}/versions", {
+        ...study(key),
+        body: { yaml, based_on: basedOn },
+      }),
     ),
   get: (key: string) => answer<StudyDetail>(server.GET("/api/studies/{key}", study(key))),
   ledger: (key: string, kind: Kind) =>

@@ -2642,6 +2642,8 @@ export interface paths {
         /**
          * Post Version
          * @description Add a version to a study, unless one with the same content exists.
+         *
+         *     Raises StaleVersion if somebody has saved another one since this one's editing began.
          */
         readonly post: operations["post_version_api_studies__key__versions_post"];
         readonly delete?: never;
@@ -8763,6 +8765,18 @@ export interface components {
              * @default 1.75
              */
             readonly stature_m: number;
+        };
+        /**
+         * NewVersion
+         * @description A new version of a study; `based_on`: the newest version when its editing began.
+         *
+         *     Without it nothing is checked, as for a file that no editor has opened.
+         */
+        readonly NewVersion: {
+            /** Based On */
+            readonly based_on?: number | null;
+            /** Yaml */
+            readonly yaml: string;
         };
         /**
          * NewWalkSet
@@ -19551,7 +19565,7 @@ export interface operations {
         };
         readonly requestBody: {
             readonly content: {
-                readonly "application/json": components["schemas"]["StudyFile"];
+                readonly "application/json": components["schemas"]["NewVersion"];
             };
         };
         readonly responses: {

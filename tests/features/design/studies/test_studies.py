@@ -162,3 +162,23 @@ def _version(lab: Lab, yaml: str) -> Json:
     body: dict[str, Any] = {"yaml": yaml}
     study: Json = ok(lab.operator.post(f"/api/studies/{STUDY}/versions", json=body))
     return study
+
+
+def test_a_version_that_began_before_another_is_refused_once(fresh_lab: Lab) -> None:
+    """A text based on an older version is refused with the newest one, and stored on top of that.
+
+    The same text again makes no further version, as after an answer that was lost.
+    """
+    place = f"/api/studies/{STUDY}/versions"
+    text = str(ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"])
+    first = edit(text, ("Acting through", "Living through"))
+    second = edit(text, ("Acting through", "Being in"))
+    assert ok(fresh_lab.operator.post(place, json={"yaml": first, "based_on": 1}))["version"] == 2
+    late: Json = {"yaml": second, "based_on": 1}
+    refused = error(fresh_lab.operator.post(place, json=late), 409, "stale")
+    assert (refused["value"], refused["valid"]) == (1, 2)
+    assert "version 2 was saved" in refused["message"]
+    late["based_on"] = refused["valid"]
+    assert ok(fresh_lab.operator.post(place, json=late))["version"] == 3
+    late["based_on"] = 2
+    assert ok(fresh_lab.operator.post(place, json=late))["version"] == 3
