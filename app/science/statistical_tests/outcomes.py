@@ -12,6 +12,7 @@ import numpy as np
 
 from app.science.statistical_tests.sample import Direction, Outcome, Sample
 from app.science.statistics import (
+    ConstantData,
     against_reference,
     friedman,
     page_trend,
@@ -78,7 +79,11 @@ def anova_outcome(sample: Sample) -> Outcome:
 
 
 def reference_outcome(sample: Sample) -> Outcome:
-    """Run signed-rank tests of every level against the reference; raises StatisticsError."""
+    """Run signed-rank tests of every level against the reference.
+
+    Raises ConstantData if none of them can say anything, other errors of statistics for data that
+    cannot be tested at all.
+    """
     alternative = _ALTERNATIVES[sample.direction]
     found = against_reference(
         sample.values,
@@ -87,13 +92,23 @@ def reference_outcome(sample: Sample) -> Outcome:
         alternative=alternative,
         alpha=sample.alpha,
     )
+    untested = [
+        f"{pair.a} – {pair.b} was not tested: {pair.test.degenerate}."
+        for pair in found.comparisons
+        if pair.test.degenerate
+    ]
+    if len(untested) == len(found.comparisons):
+        raise ConstantData(f"There is nothing to test. {' '.join(untested)}")
     p_values = [pair.p_holm if sample.holm else pair.test.p for pair in found.comparisons]
-    lowest = min(p_values)
+    lowest = min(
+        p for pair, p in zip(found.comparisons, p_values, strict=True) if not pair.test.degenerate
+    )
+    left_out = f" ({len(untested)} not tested)" if untested else ""
     return Outcome(
         n=len(sample.values),
         p=lowest,
         sentence=f"smallest {p_words(lowest)} of {len(p_values)} comparisons with "
-        f"{found.reference}, {alternative}, n = {len(sample.values)}",
+        f"{found.reference}{left_out}, {alternative}, n = {len(sample.values)}",
         columns=("comparison", "n", "median difference", "r (rank-biserial)", "p", "p declared"),
         rows=[
             (
@@ -110,11 +125,7 @@ def reference_outcome(sample: Sample) -> Outcome:
         ],
         method="Exact Wilcoxon signed-rank tests"
         + (", p adjusted by Holm's rule." if sample.holm else ", p not adjusted.")
-        + "".join(
-            f" {pair.a} – {pair.b} was not tested: {pair.test.degenerate}."
-            for pair in found.comparisons
-            if pair.test.degenerate
-        ),
+        + "".join(f" {one}" for one in untested),
     )
 
 

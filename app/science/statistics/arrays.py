@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from app.science.statistics.errors import StatisticsError, TooFewData
+from app.science.statistics.errors import ConstantData, StatisticsError, TooFewData
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -77,3 +77,12 @@ def row_midranks(blocks: FloatArray) -> FloatArray:
     equal = (across == down).sum(axis=2)
     ranks: FloatArray = less + 0.5 * (equal + 1)
     return ranks
+
+
+def require_ranks(ranks: FloatArray) -> None:
+    """Raise ConstantData if nobody's ranks, of (n subjects, k levels), tell the levels apart."""
+    n, k = ranks.shape
+    if (ranks == 0.5 * (k + 1)).all():
+        raise ConstantData(
+            f"Each of {n} subjects has the same value at all {k} levels; there is nothing to rank."
+        )

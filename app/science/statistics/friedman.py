@@ -26,8 +26,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import chdtrc
 
-from app.science.statistics.arrays import complete_blocks, row_midranks
-from app.science.statistics.errors import ConstantData
+from app.science.statistics.arrays import complete_blocks, require_ranks, row_midranks
 from app.science.statistics.friedman_exact import exact_tail
 
 EXACT_UP_TO = 15
@@ -78,11 +77,8 @@ def friedman(blocks: npt.ArrayLike, *, exact_up_to: int = EXACT_UP_TO) -> Friedm
     values = complete_blocks(blocks)
     n, k = values.shape
     ranks = row_midranks(values)
+    require_ranks(ranks)
     within = float(np.square(ranks - 0.5 * (k + 1)).sum())
-    if within <= 0.0:
-        raise ConstantData(
-            f"Each of {n} subjects has the same value at all {k} levels; there is nothing to rank."
-        )
     sums = ranks.sum(axis=0)
     statistic = (k - 1) * float(np.square(sums - 0.5 * n * (k + 1)).sum()) / within
     asymptotic = float(chdtrc(k - 1, statistic))

@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from app.science.statistics.arrays import FloatArray, complete_blocks, row_midranks
+from app.science.statistics.arrays import FloatArray, complete_blocks, require_ranks, row_midranks
 
 _EXACT_LEVELS = 7
 _EXACT_SUBJECTS = 50
@@ -68,12 +68,13 @@ class PageTrend:
 def page_trend(blocks: npt.ArrayLike) -> PageTrend:
     """Run Page's test on complete blocks (n subjects, k levels in the predicted order).
 
-    Raises TooFewData for too few rows or columns, StatisticsError for other unusable values. If all
-    values are equal, p is 1, or 0.5 if asymptotic.
+    Raises ConstantData if every subject has equal values at all levels, TooFewData for too few rows
+    or columns, StatisticsError for other unusable values.
     """
     values = complete_blocks(blocks)
     n, k = values.shape
     ranks = row_midranks(values)
+    require_ranks(ranks)
     places = np.arange(1.0, k + 1.0)
     statistic = float(ranks.sum(axis=0) @ places)
     highest = n * k * (k + 1) ** 2 / 2.0

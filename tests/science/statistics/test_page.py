@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from app.science.statistics import page_trend
+from app.science.statistics import ConstantData, friedman, page_trend
 from app.science.statistics.arrays import row_midranks
 
 
@@ -59,5 +59,10 @@ def test_many_subjects_come_to_the_normal_distribution() -> None:
 
 
 def test_equal_values_have_no_trend() -> None:
-    """If all values are equal, Page's p is 1."""
-    assert page_trend(np.ones((4, 3))).p_given_ties == 1.0
+    """If everybody's values are equal, there is nothing to rank, as Friedman's test says, too."""
+    equal = np.repeat([[1.0], [2.0], [3.0], [4.0]], 3, axis=1)
+    for test in (page_trend, friedman):
+        with pytest.raises(ConstantData, match="4 subjects .* nothing to rank"):
+            test(equal)
+    equal[0, 2] = 5.0
+    assert page_trend(equal).p_given_ties == pytest.approx(1 / 3)

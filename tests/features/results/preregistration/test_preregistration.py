@@ -139,6 +139,32 @@ def test_the_declared_test_is_run_and_deviations_are_listed(database: Database) 
 
 
 @pytest.mark.one_engine
+@pytest.mark.parametrize(
+    ("declared", "reason"),
+    [
+        ("test: page_trend", "Each of 4 subjects has the same value at all 3 levels"),
+        (
+            "correction: holm, reference: latency_0, test: against_reference",
+            "There is nothing to test. 125 ms added – no added latency was not tested",
+        ),
+    ],
+)
+def test_a_declared_test_of_equal_answers_has_no_result(
+    database: Database, declared: str, reason: str
+) -> None:
+    """If everybody answers the same in every condition, the reason stands in place of a result."""
+    declare(database, SECTION.replace("test: page_trend", declared))
+    with database.writing() as db:
+        for at in range(4):
+            build_session(db, SessionSpec(f"P{at}", likert=lambda _step, _item: 4))
+    view = view_of(database)
+    assert view.result is None
+    assert view.why_no_result is not None
+    assert view.why_no_result.startswith(reason)
+    assert "p = " not in as_markdown(view).partition("## Done")[2]
+
+
+@pytest.mark.one_engine
 def test_changes_after_the_first_session_are_listed(database: Database) -> None:
     """A late or changed declaration and exclusions without a rule are listed as deviations."""
     visit(database, "P1")

@@ -103,7 +103,10 @@ def listwise(data: LimbData) -> str:
 
 
 def signed_floor(found: AgainstReference) -> str:
-    """Return a warning if n is too small for the signed-rank test to reach significance."""
+    """Return a warning if no outcome of the signed-rank tests could be significant, and why.
+
+    There are too few participants, or too many of them have equal values: these are left out.
+    """
     sides = 1.0 if found.alternative != "two-sided" else 2.0
     return _signed_floor(found.comparisons, sides, found.alpha)
 
@@ -114,10 +117,19 @@ def _signed_floor(comparisons: Sequence[Comparison], sides: float, alpha: float)
     floor = min(1.0, sides * family * 0.5**most)
     if floor <= alpha:
         return ""
+    n = max((one.test.n for one in comparisons), default=0)
+    if not most:
+        return f"No result is possible: {n} participants have equal values in all comparisons."
+    if sides * family * 0.5**n > alpha:
+        return (
+            f"Too few participants for any result: with {most} differences other than zero and "
+            f"{family} comparisons the smallest possible adjusted p is {bounded(floor)}, above α = "
+            f"{bounded(alpha, 2)}."
+        )
     return (
-        f"Too few participants for any result: with {most} differences other than zero and "
-        f"{family} comparisons the smallest possible adjusted p is {bounded(floor)}, above α = "
-        f"{bounded(alpha, 2)}."
+        f"Too many equal values for any result: of {n} participants at most {most} have a "
+        f"difference other than zero, so that with {family} comparisons the smallest possible "
+        f"adjusted p is {bounded(floor)}, above α = {bounded(alpha, 2)}."
     )
 
 
