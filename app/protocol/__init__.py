@@ -41,6 +41,7 @@ from app.protocol.loading import (
 from app.protocol.orders import LedgerRow, imbalances, ledger_block, sequences
 from app.protocol.plan import Step, compile_plan
 from app.protocol.preregistration import ExclusionRule, Preregistration, PrimaryTest
+from app.protocol.primary_names import NO_NAMES, PrimaryNames, primary_names
 from app.protocol.procedure import ConsentStep, FormPlace
 from app.protocol.road_scenes import (
     PARTICIPANT,
@@ -85,6 +86,7 @@ __all__ = [
     "ITEM_S",
     "MAX_FACTOR",
     "MAX_FILE_BYTES",
+    "NO_NAMES",
     "OPENING_S",
     "PARTICIPANT",
     "PHASES",
@@ -118,6 +120,7 @@ __all__ = [
     "Plain",
     "PlanError",
     "Preregistration",
+    "PrimaryNames",
     "PrimaryTest",
     "ProcessFile",
     "ProcessOfStudy",
@@ -156,6 +159,7 @@ __all__ = [
     "parse_study_json",
     "path_text",
     "planned_s",
+    "primary_names",
     "read_source",
     "sequences",
     "settings_in_force",

@@ -82,7 +82,7 @@ def _report_lines(report: CohortReport) -> Iterator[str]:
             f"[{change.low:+.2f}, {change.high:+.2f}], n = {change.people}"
         )
     yield ""
-    yield reach_sentence(report)
+    yield reach_sentence(report.reached)
     for found in report.findings:
         yield f"  {found.path}: {found.message}"
     for text in paragraphs(report).values():

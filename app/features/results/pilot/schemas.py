@@ -12,6 +12,7 @@ from app.features.results.pilot.order import (
     SETS,
     TARGET,
 )
+from app.protocol import PrimaryNames, PrimaryTest
 
 State = Literal["simulating", "stopped", "ready", "failed"]
 Avatar = Literal["physics", "physics_without_fingers", "delayed_copy"]
@@ -148,7 +149,10 @@ class PublishedView(BaseModel):
 
 
 class CohortFigures(BaseModel):
-    """The report of a cohort; `sha256` is that of its record, `failures` counts visits."""
+    """The report of a cohort; `sha256` is that of its record, `failures` counts visits.
+
+    `ethics`: a text for the ethics form, by language.
+    """
 
     sha256: str
     avatar: Avatar
@@ -162,7 +166,7 @@ class CohortFigures(BaseModel):
     session_min: float
     walk_back_min: float
     storage_mb: float
-    ethics: str
+    ethics: dict[str, str]
 
 
 class PowerPointView(BaseModel):
@@ -197,25 +201,19 @@ class AssumptionView(BaseModel):
     source: str
 
 
-class TestedView(BaseModel):
-    """The test whose power is simulated."""
-
-    test: str
-    measure: str
-    score: str | None = None
-    limb: str
-    direction: str
-
-
 class PowerFigures(BaseModel):
-    """A power curve; `preregistered` is false if only the assumptions name the test."""
+    """A power curve; `preregistered` is false if only the assumptions name the test.
+
+    `names`: for the keys in the test, as far as they are known.
+    """
 
     planned_n: int
     alpha: float
     target: float
     sets: int
     preregistered: bool
-    test: TestedView
+    test: PrimaryTest
+    names: PrimaryNames
     assumed_difference: float
     assumptions_sha256: str
     smallest_sufficient_n: int | None
@@ -251,9 +249,12 @@ class PilotListed(BaseModel):
 
 
 class PilotView(PilotListed):
-    """A pilot with its figures, as far as it has any, and a text for the preregistration."""
+    """A pilot with its figures, as far as it has any.
+
+    `preregistration`: a text for the preregistration, by language.
+    """
 
     figures: CohortFigures | None
     power: PowerFigures | None
-    preregistration: str | None
+    preregistration: dict[str, str] | None
     processor_s: float | None

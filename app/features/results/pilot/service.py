@@ -39,6 +39,7 @@ from app.platform.access import Caller
 from app.platform.config_problems import invalid_config
 from app.platform.context import AppContext
 from app.protocol import (
+    NO_NAMES,
     ConfigError,
     LoadedAssumptions,
     LoadedStudy,
@@ -101,17 +102,24 @@ def pilot_view(db: Session, context: AppContext, study_key: str, pilot_id: str) 
     """Return one pilot with its figures; raise NotFound."""
     row = pilot_of(db, study_key, pilot_id)
     summary = row.summary or {}
-    report = summary.get("report")
-    figures = None if report is None else {**report, "ethics": report["paragraphs"]["ethics"]}
+    report, curve = summary.get("report"), summary.get("curve")
+    # Earlier releases stored texts in English only, and no names.
+    ethics = None if report is None else report.get("ethics") or report["paragraphs"]["ethics"]
+    figures = None if report is None else {**report, "ethics": _by_language(ethics)}
+    power = None if curve is None else {"names": NO_NAMES, **curve}
     return PilotView.model_validate(
         {
             **_listed(row, db.get_one(StudyVersion, row.study_version_id), context).model_dump(),
             "figures": figures,
-            "power": summary.get("curve"),
-            "preregistration": summary.get("preregistration"),
+            "power": power,
+            "preregistration": _by_language(summary.get("preregistration")),
             "processor_s": summary.get("processor_s"),
         }
     )
+
+
+def _by_language(text: dict[str, str] | str | None) -> dict[str, str] | None:
+    return {"en": text} if isinstance(text, str) else text
 
 
 def pilot_of(db: Session, study_key: str, pilot_id: str) -> PilotRow:

@@ -3,7 +3,7 @@
 import errno
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any, Final
 
 from app.errors import as_sentences, file_problem
@@ -17,7 +17,8 @@ from app.features.results.pilot.simulation import (
     Progress,
     check_study,
     curve_data,
-    preregistration_paragraph,
+    form_texts,
+    preregistration_texts,
     report_data,
     report_on,
     simulate_cohort,
@@ -35,7 +36,7 @@ def run_pilot(order: PilotOrder, files: PilotFolder) -> Json:
     """Compute a pilot, with what is finished kept in its folder; raise CannotSimulate.
 
     Returns its summary: `report` of a cohort, `curve` of the power if anything is assumed,
-    `preregistration`, a text with its figures, and `processor_s`.
+    `preregistration`, a text with its figures by language, and `processor_s`.
     """
     course = _Course(files)
     try:
@@ -97,17 +98,18 @@ def _cohort(order: PilotOrder, files: PilotFolder, course: _Course) -> Json:
         pause=course.pause,
     )
     curve = None if order.assumptions is None else _curve(order, files, course)
-    report = report_data(report_on(study, people, checked, curve))
+    found = report_on(study, people, checked, curve)
+    report = report_data(found) | {"ethics": form_texts(found)["ethics"]}
     # A resumed run knows only its own share of the time, so it is nobody's figure to keep.
-    del report["real_time_factor"]
+    del report["real_time_factor"], report["paragraphs"]
     return _with_curve(report, curve)
 
 
 def _with_curve(report: Json | None, curve: Curve | None) -> Json:
     return {
         "report": report,
-        "curve": None if curve is None else curve_data(curve),
-        "preregistration": preregistration_paragraph(curve),
+        "curve": None if curve is None else curve_data(curve) | {"names": asdict(curve.names)},
+        "preregistration": preregistration_texts(curve),
     }
 
 

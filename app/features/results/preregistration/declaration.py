@@ -7,9 +7,15 @@ from sqlalchemy.orm import Session
 
 from app.features.design.instruments import instrument_of
 from app.features.design.studies import instrument_for, protocol_of
-from app.features.results.preregistration.schemas import DeclarationView, PrimaryNames
+from app.features.results.preregistration.schemas import DeclarationView
 from app.models import StudyVersion
-from app.protocol import ExclusionRule, Preregistration, PrimaryTest
+from app.protocol import (
+    ExclusionRule,
+    Preregistration,
+    PrimaryNames,
+    PrimaryTest,
+    primary_names,
+)
 from app.science.statistical_tests import statistical_test
 
 MEASURES = {
@@ -76,19 +82,9 @@ def declaration_of(versions: list[StudyVersion]) -> Declared | None:
 def names_in(db: Session, declared: Declared) -> PrimaryNames:
     """Return the names of what the primary test refers to, as of the version that declared it."""
     primary, version = declared.preregistration.primary, declared.version
-    conditions = {one.key: one.label for one in protocol_of(version).conditions}
-    names = PrimaryNames(
-        instrument=None,
-        score=None,
-        reference=None if primary.reference is None else dict(conditions[primary.reference]),
-    )
-    if primary.instrument is None:
-        return names
-    instrument = instrument_of(instrument_for(db, version, primary.instrument))
-    labels = {one.key: dict(one.label) for one in instrument.scores}
-    return names.model_copy(
-        update={"instrument": dict(instrument.title), "score": labels.get(primary.score or "")}
-    )
+    key = primary.instrument
+    own = {} if key is None else {key: instrument_of(instrument_for(db, version, key))}
+    return primary_names(primary, protocol_of(version), own)
 
 
 def primary_words(primary: PrimaryTest) -> str:

@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import BaseModel
 
-from app.protocol import Preregistration
+from app.protocol import Preregistration, PrimaryNames
 
 DeviationCode = Literal[
     "declared_late",
@@ -21,17 +21,6 @@ DeviationCode = Literal[
     "not_registered",
     "exploratory",
 ]
-
-
-class PrimaryNames(BaseModel):
-    """What study and instrument call what the primary test names by key, each by language.
-
-    Null for what it does not name.
-    """
-
-    instrument: dict[str, str] | None
-    score: dict[str, str] | None
-    reference: dict[str, str] | None
 
 
 class DeclarationView(BaseModel):

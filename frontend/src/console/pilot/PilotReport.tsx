@@ -2,6 +2,7 @@
 import { Figure } from "@charts/Figure";
 import { Paper, Title } from "@mantine/core";
 import { decimals, measuredTime, number } from "@shared/format";
+import { inLanguage, type Text } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { seconds } from "@shared/units";
@@ -42,10 +43,15 @@ function Cohort({ pilot, figures }: CohortProps): JSX.Element {
         <dl className={classes.facts}>
           <dt>{t("pilot.facts.length")}</dt>
           <dd>
-            {t("pilot.facts.length.value", {
-              minutes: number(figures.session_min, language, 0),
-              back: number(figures.walk_back_min, language, 1),
-            })}
+            {t(
+              Number(figures.walk_back_min.toFixed(1)) === 0
+                ? "pilot.facts.length.noWalks"
+                : "pilot.facts.length.value",
+              {
+                minutes: number(figures.session_min, language, 0),
+                back: number(figures.walk_back_min, language, 1),
+              },
+            )}
           </dd>
           <dt>{t("pilot.facts.storage")}</dt>
           <dd>
@@ -212,23 +218,19 @@ function Reach({ figures }: FiguresProps): JSX.Element {
   );
 }
 
-/** A text for a form, with a button that copies it. */
-function Paragraph({
-  title,
-  text,
-}: {
-  readonly title: string;
-  readonly text: string;
-}): JSX.Element {
-  const { t } = useTexts();
+/** A text for a form in the language of the page, with a button that copies it. */
+function Paragraph({ title, text }: { readonly title: string; readonly text: Text }): JSX.Element {
+  const { t, language } = useTexts();
+  // Pilots of earlier releases have it in English only.
+  const shown = text[language] === undefined ? "en" : language;
   return (
     <Paper>
       <div className={classes.head}>
         <Title order={3}>{title}</Title>
-        <CopyButton text={text} label={t("action.copy")} />
+        <CopyButton text={inLanguage(text, shown)} label={t("action.copy")} />
       </div>
-      <p className={classes.paragraph} lang="en">
-        {text}
+      <p className={classes.paragraph} lang={shown}>
+        {inLanguage(text, shown)}
       </p>
     </Paper>
   );

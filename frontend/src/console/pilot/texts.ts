@@ -81,6 +81,7 @@ export const pilotEn = {
   "pilot.facts.length": "Length of a visit",
   "pilot.facts.length.value":
     "≈ {{minutes}} min, of which {{back}} min are walks back between tasks",
+  "pilot.facts.length.noWalks": "≈ {{minutes}} min",
   "pilot.facts.storage": "Movement of one person",
   "pilot.facts.storage.value": "≈ {{size}} MB",
   "pilot.facts.failures": "Visits that could not be completed",
@@ -248,6 +249,7 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.facts.length": "Dauer eines Termins",
   "pilot.facts.length.value":
     "≈ {{minutes}} min, davon {{back}} min Rückwege zwischen den Aufgaben",
+  "pilot.facts.length.noWalks": "≈ {{minutes}} min",
   "pilot.facts.storage": "Bewegung einer Person",
   "pilot.facts.storage.value": "≈ {{size}} MB",
   "pilot.facts.failures": "Termine, die nicht zu Ende kamen",

@@ -2,10 +2,10 @@
 import { Paper, Title } from "@mantine/core";
 import type { Declaration } from "@shared/api/analysis";
 import { dateTime } from "@shared/format";
-import { inLanguage } from "@shared/text";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import classes from "./Preregistration.module.css";
+import { primaryWords } from "./primaryWords";
 
 export function DeclarationCard({
   declaration,
@@ -61,26 +61,6 @@ export function DeclarationCard({
 
 /** The preregistered test in words: test, measure, limb, direction. */
 export function Primary({ declaration }: { readonly declaration: Declaration }): JSX.Element {
-  const { t, language } = useTexts();
-  const { primary } = declaration.section;
-  const { names } = declaration;
-  const named = (name: Readonly<Record<string, string>> | null, key: string | null | undefined) =>
-    inLanguage(name, language) || (key ?? "");
-  const measure =
-    primary.measure === "score"
-      ? t("prereg.words.score", {
-          score: named(names.score, primary.score),
-          instrument: named(names.instrument, primary.instrument),
-        })
-      : t(`value.${primary.measure}`);
-  const limb = primary.limb === "both" ? t("value.both") : t(`prereg.words.${primary.limb}`);
-  const direction = t(`value.${primary.direction ?? "two_sided"}`);
-  const reference = named(names.reference, primary.reference);
-  return (
-    <>
-      {t("prereg.words", { test: t(`value.${primary.test}`), measure, limb, direction })}
-      {reference !== "" && ` ${t("prereg.words.reference", { reference })}`}
-      {primary.correction === "holm" && ` ${t("prereg.words.holm")}`}
-    </>
-  );
+  const texts = useTexts();
+  return <>{primaryWords(texts, declaration.section.primary, declaration.names)}</>;
 }

@@ -5319,6 +5319,8 @@ export interface components {
         /**
          * CohortFigures
          * @description The report of a cohort; `sha256` is that of its record, `failures` counts visits.
+         *
+         *     `ethics`: a text for the ethics form, by language.
          */
         readonly CohortFigures: {
             /**
@@ -5329,7 +5331,9 @@ export interface components {
             /** Changes */
             readonly changes: readonly components["schemas"]["ChangeView"][];
             /** Ethics */
-            readonly ethics: string;
+            readonly ethics: {
+                readonly [key: string]: string;
+            };
             /** Failures */
             readonly failures: number;
             /** Phases */
@@ -9542,7 +9546,9 @@ export interface components {
         };
         /**
          * PilotView
-         * @description A pilot with its figures, as far as it has any, and a text for the preregistration.
+         * @description A pilot with its figures, as far as it has any.
+         *
+         *     `preregistration`: a text for the preregistration, by language.
          */
         readonly PilotView: {
             /**
@@ -9570,7 +9576,9 @@ export interface components {
             readonly participants: readonly number[];
             readonly power: components["schemas"]["PowerFigures"] | null;
             /** Preregistration */
-            readonly preregistration: string | null;
+            readonly preregistration: {
+                readonly [key: string]: string;
+            } | null;
             /** Processor S */
             readonly processor_s: number | null;
             readonly progress: components["schemas"]["PilotProgress"] | null;
@@ -9663,6 +9671,8 @@ export interface components {
         /**
          * PowerFigures
          * @description A power curve; `preregistered` is false if only the assumptions name the test.
+         *
+         *     `names`: for the keys in the test, as far as they are known.
          */
         readonly PowerFigures: {
             /** Alpha */
@@ -9673,6 +9683,7 @@ export interface components {
             readonly assumptions: readonly components["schemas"]["AssumptionView"][];
             /** Assumptions Sha256 */
             readonly assumptions_sha256: string;
+            readonly names: components["schemas"]["PrimaryNames"];
             /** Planned N */
             readonly planned_n: number;
             /** Power */
@@ -9685,7 +9696,7 @@ export interface components {
             readonly smallest_sufficient_n: number | null;
             /** Target */
             readonly target: number;
-            readonly test: components["schemas"]["TestedView"];
+            readonly test: components["schemas"]["PrimaryTest"];
         };
         /**
          * PowerPointView
@@ -12478,22 +12489,6 @@ export interface components {
             readonly name?: string | null;
             /** User Agent */
             readonly user_agent: string;
-        };
-        /**
-         * TestedView
-         * @description The test whose power is simulated.
-         */
-        readonly TestedView: {
-            /** Direction */
-            readonly direction: string;
-            /** Limb */
-            readonly limb: string;
-            /** Measure */
-            readonly measure: string;
-            /** Score */
-            readonly score?: string | null;
-            /** Test */
-            readonly test: string;
         };
         /**
          * TimelineRequest

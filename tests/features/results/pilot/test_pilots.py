@@ -61,9 +61,10 @@ def test_a_cohort_has_the_bytes_of_the_command(
     assert (figures["failures"], figures["unfinished"]) == (0, 0)
     assert {one["stature_m"] for one in figures["reach"]} == {1.518, 1.869}
     assert {one["latency_ms"] for one in figures["phases"]} == {0.0, 200.0}
-    assert f"{_PEOPLE} simulated people (seed 5)" in figures["ethics"]
+    assert f"{_PEOPLE} simulated people (seed 5)" in figures["ethics"]["en"]
+    assert "Ein Termin der Studie „Zwei Verzögerungen, Handaufgabe“" in figures["ethics"]["de"]
     assert pilot["power"] is None
-    assert "nothing is assumed yet" in pilot["preregistration"]
+    assert "nothing is assumed yet" in pilot["preregistration"]["en"]
     (listed,) = ok(study.operator.get(PATH))
     assert listed["session_min"] == figures["session_min"]
     with study.database.reading() as db:
@@ -175,7 +176,17 @@ def test_the_power_of_a_study_is_simulated(study: Lab) -> None:
     assert all(one["low"] <= one["power"] <= one["high"] for one in power["power"])
     assert not power["preregistered"]
     assert {one["source"] for one in power["assumptions"]} >= {"assumed"}
-    assert "Clopper-Pearson" in pilot["preregistration"]
+    names = power["names"]
+    assert (power["test"]["instrument"], power["test"]["score"]) == ("karas2020", "agency")
+    for language, words in (
+        ("en", "Page’s trend test: score"),
+        ("de", "Trendtest nach Page: Wert"),
+    ):
+        said = pilot["preregistration"][language]
+        assert words in said
+        assert names["score"][language] in said
+        assert names["instrument"][language] in said
+        assert not {"page_trend", "karas2020"} & set(said.split())
 
 
 @pytest.mark.one_engine

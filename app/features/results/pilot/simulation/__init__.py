@@ -13,6 +13,10 @@ from app.features.results.pilot.simulation.cohort import (
     merged_cohort,
     simulate_cohort,
 )
+from app.features.results.pilot.simulation.form_texts import (
+    preregistration_texts,
+    reach_sentence,
+)
 from app.features.results.pilot.simulation.plan import (
     Chunk,
     PilotPlan,
@@ -37,9 +41,8 @@ from app.features.results.pilot.simulation.report import (
     PUBLISHED,
     CohortReport,
     failures_of,
+    form_texts,
     paragraphs,
-    preregistration_paragraph,
-    reach_sentence,
     report_data,
     report_on,
 )
@@ -71,13 +74,14 @@ __all__ = [
     "curve_data",
     "curve_json",
     "failures_of",
+    "form_texts",
     "is_cohort",
     "lowest_p",
     "make_plan",
     "merged_cohort",
     "merged_curve",
     "paragraphs",
-    "preregistration_paragraph",
+    "preregistration_texts",
     "reach_sentence",
     "report_data",
     "report_on",

@@ -5,7 +5,7 @@ import multiprocessing
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,7 @@ from app.features.results.pilot.simulation.power_record import (
 )
 from app.features.results.pilot.simulation.simulated_study import SimulatedStudy
 from app.platform.workers import end_with_parent
-from app.protocol import LoadedAssumptions
+from app.protocol import NO_NAMES, LoadedAssumptions, PrimaryNames, primary_names
 from app.science.pilot import PowerPoint, Results, power_point, smallest_sufficient
 
 
@@ -54,12 +54,14 @@ class PowerOrder:
 class Curve:
     """The power by number of participants, with all that it depends on.
 
-    `unfinished`: chunks of other shards that are not in the record.
+    `unfinished`: chunks of other shards that are not in the record. `names`: what the study calls
+    what its test names by key; records do not have them.
     """
 
     header: Mapping[str, Any]
     points: tuple[PowerPoint, ...]
     unfinished: int
+    names: PrimaryNames = NO_NAMES
 
 
 def simulate_power(
@@ -113,7 +115,8 @@ def simulate_power(
             else:
                 kept.add(chunk, tested)
             tell(Progress("power", len(own) - len(missing) + done, len(own)))
-    return curve_of(Record(header, results))
+    names = primary_names(simulated.declared.primary, protocol, study.instruments)
+    return replace(curve_of(Record(header, results)), names=names)
 
 
 def merged_curve(paths: Sequence[Path]) -> Curve:

@@ -10,10 +10,16 @@ from scipy import stats
 from app.features.results.pilot.schemas import PhaseFigures
 from app.features.results.pilot.simulation.check import Checked, Finding, Reached
 from app.features.results.pilot.simulation.cohort import Cohort
+from app.features.results.pilot.simulation.form_texts import (
+    Rehearsed,
+    Texts,
+    ethics_texts,
+    preregistration_texts,
+)
 from app.features.results.pilot.simulation.plan import PilotStudy
 from app.features.results.pilot.simulation.power import Curve
 from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
-from app.simulated_people.visits import PhaseOutcome, Visit
+from app.simulated_people.visits import AvatarKind, PhaseOutcome, Visit, avatar_kind_of
 
 MEASURES: Final = ("completions", "side_contacts", "contact_time_s", "out_of_order")
 PUBLISHED: Final = {45.0: 66.0, 125.0: 61.5, 350.0: 36.0}
@@ -38,10 +44,13 @@ class Change:
 class CohortReport:
     """Everything that is said of a cohort.
 
-    `session_min`: the estimated length of a visit, with the mean of the walks back. `storage_mb`:
-    of one visit's recorded movement.
+    `title`: that of the study, by language. `own_avatar`: the kind of avatar that the study has,
+    whichever the cohort had. `session_min`: the estimated length of a visit, with the mean of the
+    walks back. `storage_mb`: of one visit's recorded movement.
     """
 
+    title: Mapping[str, str]
+    own_avatar: AvatarKind
     cohort: Cohort
     cells: tuple[PhaseFigures, ...]
     changes: tuple[Change, ...]
@@ -69,6 +78,8 @@ def report_on(
     )
     cells = tuple(_cells(finished))
     return CohortReport(
+        title=study.title,
+        own_avatar=avatar_kind_of(study),
         cohort=cohort,
         cells=cells,
         changes=tuple(_changes(finished)),
@@ -81,44 +92,30 @@ def report_on(
     )
 
 
-def paragraphs(report: CohortReport) -> Mapping[str, str]:
-    """Return texts for the ethics form and the preregistration, with the figures of the report."""
+def form_texts(report: CohortReport) -> Mapping[str, Texts]:
+    """Return texts for the ethics form and the preregistration, each in both languages."""
     header = report.cohort.header
-    ethics = (
-        f"A visit to the study {header['study']} takes about {report.session_min:.0f} minutes, "
-        f"of which {report.walk_back_min:.1f} minutes are walks back between tasks. Before anybody "
-        f"takes part, the procedure was rehearsed with {len(report.cohort.visits)} simulated people"
-        f" (seed {header['seed']}); {failures_of(report.cohort)} of these visits could not be "
-        f"completed. {reach_sentence(report)} The movement recorded of one person takes about "
-        f"{report.storage_mb:.0f} MB. These figures come from a simulation and say nothing about "
-        "how people will feel."
+    rehearsed = Rehearsed(
+        title=report.title,
+        people=len(report.cohort.visits),
+        seed=header["seed"],
+        failures=failures_of(report.cohort),
+        used=header["avatar"],
+        own=report.own_avatar,
+        session_min=report.session_min,
+        walk_back_min=report.walk_back_min,
+        storage_mb=report.storage_mb,
+        reached=report.reached,
     )
-    return {"ethics": ethics, "preregistration": preregistration_paragraph(report.power)}
+    return {
+        "ethics": ethics_texts(rehearsed),
+        "preregistration": preregistration_texts(report.power),
+    }
 
 
-def preregistration_paragraph(curve: Curve | None) -> str:
-    """Return a text for the preregistration: how the number of participants was simulated."""
-    if curve is None or not curve.points:
-        return (
-            "The number of participants was not derived from a simulation: nothing is assumed yet "
-            "of how people would answer."
-        )
-    test = curve.header["test"]
-    points = "; ".join(
-        f"n = {one.n}: no data set could be analysed"
-        if one.never_tested
-        else f"n = {one.n}: {one.power:.2f} [{one.low:.2f}, {one.high:.2f}], level {one.level:.3f}"
-        for one in curve.points
-    )
-    return (
-        f"The power of the test ({test['test']} of {test['score'] or test['measure']}, "
-        f"{test['limb']}, {test['direction']}, alpha {curve.header['alpha']:g}) was simulated "
-        f"with {curve.header['sets']} data sets for each number of participants, in the "
-        f"study's own orders and with its own exclusions, seed {curve.header['seed']}: {points}"
-        ". Bands are Clopper-Pearson intervals of 95 %. All of it follows from assumptions "
-        f"that nobody has measured in this study (SHA-256 {curve.header['assumptions_sha256']})"
-        "."
-    )
+def paragraphs(report: CohortReport) -> Mapping[str, str]:
+    """Return the texts for forms in English, as the command prints them."""
+    return {name: texts["en"] for name, texts in form_texts(report).items()}
 
 
 def report_data(report: CohortReport) -> dict[str, Any]:
@@ -154,19 +151,6 @@ def report_data(report: CohortReport) -> dict[str, Any]:
 def failures_of(cohort: Cohort) -> int:
     """Return how many visits could not be completed."""
     return sum(visit.failure is not None for visit in cohort.visits)
-
-
-def reach_sentence(report: CohortReport) -> str:
-    """Say which boxes simulated bodies reached."""
-    missed = [one for one in report.reached if one.out_of_reach]
-    bodies = sorted({one.stature_m for one in report.reached})
-    if not bodies:
-        return "Reach was not looked at."
-    between = f"from {bodies[0]:.3f} to {bodies[-1]:.3f} m (5th percentile of women to 95th of men)"
-    if not missed:
-        return f"Every box was reached by simulated bodies {between}."
-    which = ", ".join(sorted({surface for one in missed for surface in one.out_of_reach}))
-    return f"Out of reach of simulated bodies {between}: {which}."
 
 
 def _walk_back_s(phase: PhaseOutcome) -> float:

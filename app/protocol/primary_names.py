@@ -1,0 +1,37 @@
+"""What a study and its instrument call the things that the primary test names by their keys."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from app.protocol.preregistration import PrimaryTest
+from app.protocol.study import StudyProtocol
+from app.science.instruments import Instrument
+
+
+@dataclass(frozen=True)
+class PrimaryNames:
+    """What study and instrument call what the primary test names by key, each by language.
+
+    Null for what it does not name.
+    """
+
+    instrument: dict[str, str] | None
+    score: dict[str, str] | None
+    reference: dict[str, str] | None
+
+
+NO_NAMES = PrimaryNames(None, None, None)
+"""Where nothing but the keys is known."""
+
+
+def primary_names(
+    primary: PrimaryTest, study: StudyProtocol, instruments: Mapping[str, Instrument]
+) -> PrimaryNames:
+    """Return the names of what a primary test of the study refers to."""
+    labels = {one.key: dict(one.label) for one in study.conditions}
+    reference = None if primary.reference is None else labels.get(primary.reference)
+    instrument = instruments.get(primary.instrument or "")
+    if instrument is None:
+        return PrimaryNames(None, None, reference)
+    scores = {one.key: dict(one.label) for one in instrument.scores}
+    return PrimaryNames(dict(instrument.title), scores.get(primary.score or ""), reference)
