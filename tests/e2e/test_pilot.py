@@ -55,7 +55,7 @@ def test_a_pilot_is_started_read_and_deleted(
     expect(shown.get_by_text("Length of a visit")).to_be_visible(timeout=4 * PATIENCE_MS)
     expect(shown.get_by_text("SIMULATED").first).to_be_visible()
     expect(shown.get_by_text("5th percentile of women to 95th of men")).to_be_visible()
-    expect(shown.get_by_text("phase_too_short: procedure.block.phases[0]")).to_be_visible()
+    expect(shown.get_by_text("Phase too short: procedure.block.phases[0]")).to_be_visible()
     assert axe(page) == []
     screenshot(page, "pilot-cohort")
     page.goto(f"{server.url}/#/studies/{KEY}/overview")
@@ -75,6 +75,8 @@ def test_a_pilot_is_started_read_and_deleted(
     curve = shown.get_by_role("region", name="Power by number of participants").first
     expect(curve.locator(".main-svg").first).to_be_visible(timeout=4 * PATIENCE_MS)
     expect(shown.get_by_text("Clopper-Pearson intervals of 95 %. All of it")).to_be_visible()
+    expect(shown.get_by_text("Page’s trend test: score “").first).to_be_visible()
+    expect(shown.get_by_text("page_trend")).to_have_count(0)
     expect(shown.get_by_text("answering.effects.latency_350")).to_be_visible()
     assert axe(page) == []
     page.emulate_media(color_scheme="dark")

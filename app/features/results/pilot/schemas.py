@@ -16,6 +16,14 @@ from app.protocol import PrimaryNames, PrimaryTest
 
 State = Literal["simulating", "stopped", "ready", "failed"]
 Avatar = Literal["physics", "physics_without_fingers", "delayed_copy"]
+FindingKind = Literal[
+    "out_of_reach",
+    "phase_too_short",
+    "latency_over_buffer",
+    "unbalanced_orders",
+    "scene_without_path",
+    "never_significant",
+]
 Seed = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
 Assumed = Annotated[str, Field(min_length=1, max_length=100_000, description="YAML")]
 Counted = Annotated[int, Field(strict=True, ge=FEWEST_PARTICIPANTS, le=MOST_PARTICIPANTS)]
@@ -103,7 +111,7 @@ class ReachedView(BaseModel):
 class FindingView(BaseModel):
     """What would break the study: its place in the file, and what to do."""
 
-    kind: str
+    kind: FindingKind
     path: str
     message: str
     remedy: str

@@ -97,7 +97,7 @@ function Findings({ figures }: FiguresProps): JSX.Element {
             <Notice
               key={one.path + one.kind}
               tone="warn"
-              title={`${one.kind}: ${one.path}`}
+              title={`${t(`pilot.kind.${one.kind}`)}: ${one.path}`}
               remedy={one.remedy}
             >
               {one.message}

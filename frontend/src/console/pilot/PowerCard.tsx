@@ -5,28 +5,24 @@ import { decimals, number } from "@shared/format";
 import { Notice } from "@shared/ui/Notice";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
+import { measureWords, primaryWords } from "../preregistration/primaryWords";
 import { NumbersTable } from "../ui/tables";
 import { isNeverTested, powerFigure } from "./figures";
 import classes from "./Pilot.module.css";
 import type { PowerFigures, PowerPoint } from "./pilots";
 
 export function PowerCard({ power }: { readonly power: PowerFigures }): JSX.Element {
-  const { t, language } = useTexts();
-  const { test } = power;
-  const measure = test.score ?? test.measure;
+  const texts = useTexts();
+  const { t, language } = texts;
+  const { test, names } = power;
   const never = power.power.filter(isNeverTested).map(({ n }) => n);
   return (
     <Paper>
       <Title order={3}>{t("pilot.curve")}</Title>
       <p className={classes.soft}>
         {t(power.preregistered ? "pilot.curve.preregistered" : "pilot.curve.assumed")}:{" "}
-        {t("pilot.curve.declared", {
-          test: test.test,
-          measure,
-          limb: test.limb,
-          direction: test.direction,
-          alpha: String(power.alpha),
-        })}
+        {primaryWords(texts, test, names)}{" "}
+        {t("pilot.curve.alpha", { alpha: number(power.alpha, language, 3) })}
       </p>
       <p className={classes.sentence}>
         {power.smallest_sufficient_n === null
@@ -74,7 +70,7 @@ export function PowerCard({ power }: { readonly power: PowerFigures }): JSX.Elem
       <p className={classes.soft}>
         {t("pilot.assumed.difference", {
           difference: number(power.assumed_difference, language, 3),
-          measure,
+          measure: measureWords(texts, test, names),
         })}
       </p>
       <NumbersTable

@@ -91,6 +91,12 @@ export const pilotEn = {
   "pilot.facts.hash": "SHA-256 of the record",
   "pilot.findings": "What would break the study",
   "pilot.findings.none": "Nothing was found that would break the study.",
+  "pilot.kind.out_of_reach": "Out of reach",
+  "pilot.kind.phase_too_short": "Phase too short",
+  "pilot.kind.latency_over_buffer": "Latency too long",
+  "pilot.kind.unbalanced_orders": "Unbalanced orders",
+  "pilot.kind.scene_without_path": "Scene without a path",
+  "pilot.kind.never_significant": "Never significant",
   "pilot.phases": "What they did",
   "pilot.phases.note":
     "Means over people. A task starts again until the time is up, so there is no ceiling; “none” is the floor: the share who complete no task.",
@@ -132,7 +138,7 @@ export const pilotEn = {
   "pilot.ethics": "For the ethics form",
   "pilot.prereg": "For the preregistration",
   "pilot.curve": "Power by number of participants",
-  "pilot.curve.declared": "{{test}} of {{measure}} ({{limb}}, {{direction}}), α {{alpha}}",
+  "pilot.curve.alpha": "α = {{alpha}}.",
   "pilot.curve.preregistered": "The preregistered test",
   "pilot.curve.assumed": "The test that the assumptions name; the study declares none",
   "pilot.curve.smallest":
@@ -161,7 +167,7 @@ export const pilotEn = {
   "pilot.col.unit": "Unit",
   "pilot.col.source": "Source",
   "pilot.assumed.difference":
-    "Assumed difference, longest against shortest latency: {{difference}} of {{measure}}.",
+    "Assumed difference, longest against shortest latency: {{difference}} ({{measure}}).",
   "pilot.walksBack":
     "This includes {{back}} min of walks back, as a pilot of this version says (simulated).",
 };
@@ -259,6 +265,12 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.facts.hash": "SHA-256 der Aufzeichnung",
   "pilot.findings": "Woran die Studie scheitern würde",
   "pilot.findings.none": "Es wurde nichts gefunden, woran die Studie scheitern würde.",
+  "pilot.kind.out_of_reach": "Außer Reichweite",
+  "pilot.kind.phase_too_short": "Phase zu kurz",
+  "pilot.kind.latency_over_buffer": "Verzögerung zu lang",
+  "pilot.kind.unbalanced_orders": "Unausgewogene Reihenfolgen",
+  "pilot.kind.scene_without_path": "Szene ohne Weg",
+  "pilot.kind.never_significant": "Nie signifikant",
   "pilot.phases": "Was sie gemacht haben",
   "pilot.phases.note":
     "Mittelwerte über Personen. Eine Aufgabe beginnt von vorn, bis die Zeit um ist, eine Decke gibt es daher nicht; „keine“ ist der Boden: der Anteil, der keine Aufgabe schafft.",
@@ -300,7 +312,7 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.ethics": "Für den Ethikantrag",
   "pilot.prereg": "Für die Präregistrierung",
   "pilot.curve": "Teststärke nach Zahl der Teilnehmenden",
-  "pilot.curve.declared": "{{test}} von {{measure}} ({{limb}}, {{direction}}), α {{alpha}}",
+  "pilot.curve.alpha": "α = {{alpha}}.",
   "pilot.curve.preregistered": "Der präregistrierte Test",
   "pilot.curve.assumed": "Der Test, den die Annahmen nennen; die Studie gibt keinen an",
   "pilot.curve.smallest":
@@ -329,7 +341,7 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.col.unit": "Einheit",
   "pilot.col.source": "Quelle",
   "pilot.assumed.difference":
-    "Angenommener Unterschied, längste gegen kürzeste Verzögerung: {{difference}} von {{measure}}.",
+    "Angenommener Unterschied, längste gegen kürzeste Verzögerung: {{difference}} ({{measure}}).",
   "pilot.walksBack":
     "Darin sind {{back}} min Rückwege, wie eine Pilotrechnung dieser Version sagt (simuliert).",
 };

@@ -6722,8 +6722,11 @@ export interface components {
          * @description What would break the study: its place in the file, and what to do.
          */
         readonly FindingView: {
-            /** Kind */
-            readonly kind: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "out_of_reach" | "phase_too_short" | "latency_over_buffer" | "unbalanced_orders" | "scene_without_path" | "never_significant";
             /** Message */
             readonly message: string;
             /** Path */
