@@ -122,7 +122,9 @@ class PhaseFigures:
     """One limb at one latency: means over simulated people.
 
     `at_floor`: the share who complete nothing. `share_of_lowest`: completions over those at the
-    lowest latency; None if there are none.
+    lowest latency; None if there are none. `share_low`, `share_high`: Student's t interval of 95 %
+    of the mean, over the same mean at the lowest latency, as if that were exact; None for one
+    person, and in pilots of earlier releases.
     """
 
     limb: str
@@ -136,6 +138,8 @@ class PhaseFigures:
     walk_back_s: float
     at_floor: float
     share_of_lowest: float | None
+    share_low: float | None = None
+    share_high: float | None = None
 
 
 class ChangeView(BaseModel):

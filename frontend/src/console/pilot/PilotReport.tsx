@@ -10,7 +10,7 @@ import type { JSX, ReactNode } from "react";
 import { useTexts } from "../i18n";
 import { CopyButton } from "../pages/study/ResultCard";
 import { NumbersTable } from "../ui/tables";
-import { latencyFigure } from "./figures";
+import { latencyFigure, peopleIn } from "./figures";
 import classes from "./Pilot.module.css";
 import { PowerCard } from "./PowerCard";
 import type { CohortFigures, Pilot } from "./pilots";
@@ -134,7 +134,7 @@ function Phases({ figures }: FiguresProps): JSX.Element {
           number(one.latency_ms, language, 0),
           String(one.people),
           `${shown(one.completions, 2)} (${shown(one.completions_sd, 2)})`,
-          one.share_of_lowest === null ? "–" : shown(100 * one.share_of_lowest, 0),
+          shareOf(one, (share) => shown(100 * share, 0)),
           shown(one.side_contacts),
           shown(one.contact_time_s),
           shown(one.out_of_order, 2),
@@ -144,24 +144,42 @@ function Phases({ figures }: FiguresProps): JSX.Element {
       />
       {figures.phases.some((one) => one.share_of_lowest !== null) && (
         <>
-          <h3 className={classes.small}>{t("pilot.phases.latency")}</h3>
+          <h3 className={classes.small}>
+            {t("pilot.phases.latency", { people: peopleIn(figures.phases) })}
+          </h3>
           <Figure
             figure={latencyFigure(figures, {
-              latency: t("pilot.col.latency"),
+              latency: t("pilot.axis.latency"),
               share: t("pilot.axis.share"),
               published: t("pilot.published"),
               limb,
             })}
-            label={t("pilot.phases.latency")}
+            label={t("pilot.phases.latency", { people: peopleIn(figures.phases) })}
             watermark={t("simulated.watermark")}
             loading={t("dashboard.loading")}
             failed={t("dashboard.failed")}
           />
+          <p className={classes.soft}>{t("pilot.phases.drawn")}</p>
         </>
       )}
-      <p className={classes.soft}>{t("pilot.phases.steep")}</p>
+      <p className={classes.soft}>
+        {t(
+          figures.avatar === "delayed_copy"
+            ? "pilot.phases.limits"
+            : "pilot.phases.limits.contacts",
+        )}
+      </p>
     </Card>
   );
+}
+
+/** Completions in per cent of those at the lowest latency, with the interval if it is known. */
+function shareOf(phase: CohortFigures["phases"][number], percent: (share: number) => string) {
+  const { share_of_lowest, share_low, share_high } = phase;
+  if (share_of_lowest === null) return "–";
+  return share_low == null || share_high == null
+    ? percent(share_of_lowest)
+    : `${percent(share_of_lowest)} [${percent(share_low)}, ${percent(share_high)}]`;
 }
 
 function Changes({ figures }: FiguresProps): JSX.Element | null {

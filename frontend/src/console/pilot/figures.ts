@@ -73,6 +73,7 @@ export function latencyFigure(figures: CohortFigures, words: LatencyWords): obje
           y: own.map((one) => 100 * (one.share_of_lowest ?? 0)),
           name: words.limb(limb),
           line: { color: HUES[at % HUES.length], width: 2, dash: DASHES[at % DASHES.length] },
+          ...intervals(own, HUES[at % HUES.length] ?? POWER),
         };
       }),
       {
@@ -87,6 +88,32 @@ export function latencyFigure(figures: CohortFigures, words: LatencyWords): obje
     ],
     layout: layout(words.latency, words.share),
   };
+}
+
+/** The intervals of the means, if they are known: not of one person, nor of earlier releases. */
+const intervals = (phases: CohortFigures["phases"], color: string): object => {
+  const ends = phases.map(({ share_of_lowest, share_low, share_high }) => {
+    const at = share_of_lowest ?? 0;
+    return [(share_high ?? at) - at, at - (share_low ?? at)] as const;
+  });
+  return phases.some(({ share_low }) => share_low == null)
+    ? {}
+    : {
+        error_y: {
+          type: "data",
+          symmetric: false,
+          array: ends.map(([above]) => 100 * above),
+          arrayminus: ends.map(([, below]) => 100 * below),
+          color,
+        },
+      };
+};
+
+/** How many people the means are of: one number, or the fewest and the most. */
+export function peopleIn(phases: CohortFigures["phases"]): string {
+  const counts = phases.map(({ people }) => people);
+  const [fewest, most] = [Math.min(...counts), Math.max(...counts)];
+  return fewest === most ? String(most) : `${fewest}–${most}`;
 }
 
 type Band = readonly [value: number, low: number, high: number];

@@ -100,22 +100,27 @@ export const pilotEn = {
   "pilot.phases": "What they did",
   "pilot.phases.note":
     "Means over people. A task starts again until the time is up, so there is no ceiling; “none” is the floor: the share who complete no task.",
-  "pilot.phases.latency": "Completions by latency",
-  "pilot.phases.steep":
-    "Do not rely on completions at long latencies: simulated people get worse more steeply than people did in the published task, because they do not get used to a latency within a phase and are caught at solid edges.",
+  "pilot.phases.latency": "Completions by latency (n = {{people}} simulated people)",
+  "pilot.phases.drawn":
+    "Lines: mean completions as a share of those at the lowest added latency, which counts as exact, with Student’s t interval of 95 % of each mean. Diamonds: the performance of ten people in another task, by latency from end to end (Waltemate et al. 2016). The two have different axes of latency and different tasks, so compare their shape at most.",
+  "pilot.phases.limits":
+    "Known limitation: simulated people do not get used to a latency within a phase. Do not rely on completions at long latencies.",
+  "pilot.phases.limits.contacts":
+    "Known limitations: simulated people do not get used to a latency within a phase, and with this avatar they are caught at solid edges. Do not rely on completions at long latencies.",
   "pilot.limb.hand": "hand",
   "pilot.limb.foot": "foot",
   "pilot.col.limb": "Limb",
   "pilot.col.latency": "Added latency (ms)",
   "pilot.col.people": "People",
   "pilot.col.tasks": "Tasks (SD)",
-  "pilot.col.share": "Of lowest (%)",
+  "pilot.col.share": "Of lowest (%) [95 %]",
   "pilot.col.sides": "Sides touched",
   "pilot.col.red": "Red (s)",
   "pilot.col.early": "Early touches",
   "pilot.col.back": "Walks back (s)",
   "pilot.col.floor": "None (%)",
-  "pilot.axis.share": "Completions (% of lowest)",
+  "pilot.axis.latency": "Added latency (ms); diamonds: latency from end to end",
+  "pilot.axis.share": "Completions (% of lowest);<br>diamonds: another task (%)",
   "pilot.published": "published, end to end, another task (Waltemate et al. 2016)",
   "pilot.changes": "Change from the lowest to the highest latency",
   "pilot.changes.note": "Paired means with a t interval of 95 %.",
@@ -274,22 +279,28 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.phases": "Was sie gemacht haben",
   "pilot.phases.note":
     "Mittelwerte über Personen. Eine Aufgabe beginnt von vorn, bis die Zeit um ist, eine Decke gibt es daher nicht; „keine“ ist der Boden: der Anteil, der keine Aufgabe schafft.",
-  "pilot.phases.latency": "Geschaffte Aufgaben nach Verzögerung",
-  "pilot.phases.steep":
-    "Aufgaben bei langen Verzögerungen nicht daraus ablesen: Simulierte Menschen fallen steiler ab als Menschen in der veröffentlichten Aufgabe, weil sie sich in einer Phase nicht an die Verzögerung gewöhnen und an festen Kanten hängen bleiben.",
+  "pilot.phases.latency":
+    "Geschaffte Aufgaben nach Verzögerung (n = {{people}} simulierte Menschen)",
+  "pilot.phases.drawn":
+    "Linien: im Mittel geschaffte Aufgaben als Anteil derer bei der kürzesten zusätzlichen Verzögerung, die als genau gilt, mit dem t-Intervall von 95 % jedes Mittelwerts. Rauten: die Leistung von zehn Menschen in einer anderen Aufgabe, nach Verzögerung von Ende zu Ende (Waltemate et al. 2016). Verzögerung und Aufgabe sind verschieden gemessen, vergleichbar ist also höchstens der Verlauf.",
+  "pilot.phases.limits":
+    "Bekannte Grenze: Simulierte Menschen gewöhnen sich in einer Phase nicht an die Verzögerung. Aufgaben bei langen Verzögerungen sind daraus nicht abzulesen.",
+  "pilot.phases.limits.contacts":
+    "Bekannte Grenzen: Simulierte Menschen gewöhnen sich in einer Phase nicht an die Verzögerung, und mit diesem Avatar bleiben sie an festen Kanten hängen. Aufgaben bei langen Verzögerungen sind daraus nicht abzulesen.",
   "pilot.limb.hand": "Hand",
   "pilot.limb.foot": "Fuß",
   "pilot.col.limb": "Glied",
   "pilot.col.latency": "Zusätzliche Verzögerung (ms)",
   "pilot.col.people": "Personen",
   "pilot.col.tasks": "Aufgaben (SD)",
-  "pilot.col.share": "Von der kürzesten (%)",
+  "pilot.col.share": "Von der kürzesten (%) [95 %]",
   "pilot.col.sides": "Berührte Seiten",
   "pilot.col.red": "Rot (s)",
   "pilot.col.early": "Zu frühe Berührungen",
   "pilot.col.back": "Rückwege (s)",
   "pilot.col.floor": "Keine (%)",
-  "pilot.axis.share": "Aufgaben (% der kürzesten)",
+  "pilot.axis.latency": "Zusätzliche Verzögerung (ms); Rauten: von Ende zu Ende",
+  "pilot.axis.share": "Aufgaben (% der kürzesten);<br>Rauten: andere Aufgabe (%)",
   "pilot.published": "veröffentlicht, von Ende zu Ende, andere Aufgabe (Waltemate et al. 2016)",
   "pilot.changes": "Änderung von der kürzesten zur längsten Verzögerung",
   "pilot.changes.note": "Gepaarte Mittelwerte mit t-Intervall von 95 %.",

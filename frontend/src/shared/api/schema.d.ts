@@ -9306,7 +9306,9 @@ export interface components {
          * @description One limb at one latency: means over simulated people.
          *
          *     `at_floor`: the share who complete nothing. `share_of_lowest`: completions over those at the
-         *     lowest latency; None if there are none.
+         *     lowest latency; None if there are none. `share_low`, `share_high`: Student's t interval of 95 %
+         *     of the mean, over the same mean at the lowest latency, as if that were exact; None for one
+         *     person, and in pilots of earlier releases.
          */
         readonly PhaseFigures: {
             /** At Floor */
@@ -9325,6 +9327,10 @@ export interface components {
             readonly out_of_order: number;
             /** People */
             readonly people: number;
+            /** Share High */
+            readonly share_high?: number | null;
+            /** Share Low */
+            readonly share_low?: number | null;
             /** Share Of Lowest */
             readonly share_of_lowest: number | null;
             /** Side Contacts */

@@ -61,6 +61,9 @@ def test_a_cohort_has_the_bytes_of_the_command(
     assert (figures["failures"], figures["unfinished"]) == (0, 0)
     assert {one["stature_m"] for one in figures["reach"]} == {1.518, 1.869}
     assert {one["latency_ms"] for one in figures["phases"]} == {0.0, 200.0}
+    for one in figures["phases"]:
+        # In phases of 3 s nobody completes a task, so there are no shares.
+        assert {one["share_of_lowest"], one["share_low"], one["share_high"]} == {None}
     assert f"{_PEOPLE} simulated people (seed 5)" in figures["ethics"]["en"]
     assert "Ein Termin der Studie „Zwei Verzögerungen, Handaufgabe“" in figures["ethics"]["de"]
     assert pilot["power"] is None

@@ -19,6 +19,7 @@ from app.features.results.pilot.simulation.form_texts import (
 from app.features.results.pilot.simulation.plan import PilotStudy
 from app.features.results.pilot.simulation.power import Curve
 from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
+from app.science.statistics import FloatArray
 from app.simulated_people.visits import AvatarKind, PhaseOutcome, Visit, avatar_kind_of
 
 MEASURES: Final = ("completions", "side_contacts", "contact_time_s", "out_of_order")
@@ -165,6 +166,7 @@ def _cells(visits: Sequence[Visit]) -> Iterator[PhaseFigures]:
             tasks = np.array([one.completions for one in own], dtype=np.float64)
             if lowest is None:
                 lowest = float(tasks.mean())
+            low, high = _share_interval(tasks, lowest)
             yield PhaseFigures(
                 limb=limb,
                 latency_ms=latency_ms,
@@ -177,7 +179,27 @@ def _cells(visits: Sequence[Visit]) -> Iterator[PhaseFigures]:
                 walk_back_s=float(np.mean([_walk_back_s(one) for one in own])),
                 at_floor=float(np.mean(tasks == 0.0)),
                 share_of_lowest=float(tasks.mean()) / lowest if lowest else None,
+                share_low=low,
+                share_high=high,
             )
+
+
+def _share_interval(tasks: FloatArray, lowest: float) -> tuple[float | None, float | None]:
+    """Return the interval of a mean over another one; None without an interval or that mean."""
+    half = _half_interval(tasks)
+    if half is None or not lowest:
+        return None, None
+    mean = float(tasks.mean())
+    # Nobody completes less than nothing.
+    return max(0.0, mean - half) / lowest, (mean + half) / lowest
+
+
+def _half_interval(values: FloatArray) -> float | None:
+    """Return half the t interval of 95 % of a mean; None for a single value."""
+    if values.size < 2:
+        return None
+    quantile = stats.t.ppf(0.975, values.size - 1)
+    return float(quantile * values.std(ddof=1) / np.sqrt(values.size))
 
 
 def _changes(visits: Sequence[Visit]) -> Iterator[Change]:
@@ -195,9 +217,7 @@ def _changes(visits: Sequence[Visit]) -> Iterator[Change]:
                 ],
                 dtype=np.float64,
             )
-            half = float(
-                stats.t.ppf(0.975, len(both) - 1) * change.std(ddof=1) / np.sqrt(len(both))
-            )
+            half = _half_interval(change) or 0.0
             mean = float(change.mean())
             yield Change(limb, measure, len(both), mean, mean - half, mean + half)
 
