@@ -14,6 +14,10 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 STUDY = "reembodiment-latency"
 STEPS = 8
+IS_UNCOVERED = """element => {
+  const {left, top, width, height} = element.getBoundingClientRect()
+  return element.contains(document.elementFromPoint(left + width / 2, top + height / 2))
+}"""
 
 
 @pytest.fixture
@@ -38,6 +42,10 @@ def test_a_newcomer_watches_a_session_and_downloads_its_data(
     page.wait_for_url(re.compile(r"#/sessions/\w+$"), timeout=PATIENCE_MS)
     expect(page.get_by_text(re.compile(r"^SIM-"))).to_be_visible(timeout=PATIENCE_MS)
     _tour(page, axe, screenshot)
+    page.keyboard.press("n")
+    note = page.locator("#note")
+    expect(note).to_be_focused()
+    assert note.evaluate(IS_UNCOVERED), "something lies over the field that has the focus"
     page.get_by_role("button", name="Stop", exact=True).click()
     expect(page.get_by_text("The scripted participant was stopped")).to_be_visible(
         timeout=PATIENCE_MS

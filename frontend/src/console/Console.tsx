@@ -99,10 +99,10 @@ function Shell({ account }: { readonly account: Account }): JSX.Element {
         {t("app.skip")}
       </button>
       <Frame account={account}>
+        {may(account.role, "tryout") && <TryoutBar />}
         <Page account={account} />
       </Frame>
       <FocusOnPage />
-      {may(account.role, "tryout") && <TryoutBar />}
     </Router>
   );
 }

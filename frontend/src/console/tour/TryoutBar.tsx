@@ -1,11 +1,10 @@
 /**
- * The bar on every page while a scripted participant is running: where it is, a link to it, and a
- * stop button.
+ * The line above every page while a scripted participant is running: where it is, a link to it, and
+ * a stop button. It takes a place of its own, so that it covers nothing.
  *
  * The page goes to its session as soon as there is one, and the tour starts if it was never seen.
  */
-import { Button, Loader, Tooltip } from "@mantine/core";
-import { useLocalStorage } from "@mantine/hooks";
+import { Button, Loader } from "@mantine/core";
 import type { Tryout } from "@shared/api/housekeeping";
 import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
@@ -68,72 +67,29 @@ function Bar({ tryout, watching, onWatch, onClose }: BarProps): JSX.Element {
   const { t } = useTexts();
   const stop = useStopTryout();
   const touring = useTourStep() !== null;
-  const [isFolded, setFolded] = useLocalStorage({
-    key: "reembody.tryout.folded",
-    defaultValue: false,
-    getInitialValueInEffect: false,
-  });
-  const toggle = useRef<HTMLButtonElement>(null);
-  const fold = (is: boolean) => {
-    setFolded(is);
-    // The button stands elsewhere then; the focus goes along.
-    requestAnimationFrame(() => toggle.current?.focus());
-  };
-  // What has failed is always told in full.
-  if (isFolded && tryout.state !== "failed") {
-    return (
-      <section
-        className={`${classes.bar} ${classes.folded}`}
-        data-state={tryout.state}
-        aria-label={t("try.label")}
-      >
-        <Tooltip label={t("try.unfold")} position="left">
-          <button
-            ref={toggle}
-            type="button"
-            className={classes.unfold}
-            aria-label={t("try.unfold")}
-            aria-expanded={false}
-            onClick={() => fold(false)}
-          >
-            {tryout.state === "starting" ? <Loader size="xs" /> : <Icon name="body" size={18} />}
-          </button>
-        </Tooltip>
-      </section>
-    );
-  }
   return (
-    <section className={classes.bar} data-state={tryout.state} aria-label={t("try.label")}>
-      {tryout.state === "starting" ? <Loader size="xs" /> : <Icon name="body" size={18} />}
+    <section
+      className={classes.bar}
+      data-strip
+      data-state={tryout.state}
+      aria-label={t("try.label")}
+    >
+      {tryout.state === "starting" ? <Loader size={17} /> : <Icon name="body" size={17} />}
       <StatusText tryout={tryout} />
-      {tryout.state !== "failed" && (
-        <Tooltip label={t("try.fold")} position="left">
-          <button
-            ref={toggle}
-            type="button"
-            className={classes.fold}
-            aria-label={t("try.fold")}
-            aria-expanded
-            onClick={() => fold(true)}
-          >
-            <Icon name="minus" size={16} />
-          </button>
-        </Tooltip>
-      )}
       <div className={classes.buttons}>
         {watching && isOn(tryout) && !touring && (
-          <Button size="compact-sm" variant="subtle" onClick={startTour}>
+          <Button size="compact-xs" variant="subtle" onClick={startTour}>
             {t("try.tour")}
           </Button>
         )}
         {!watching && tryout.session_id !== null && (
-          <Button size="compact-sm" variant="default" onClick={onWatch}>
+          <Button size="compact-xs" variant="default" onClick={onWatch}>
             {t("try.watch")}
           </Button>
         )}
         {isOn(tryout) ? (
           <Button
-            size="compact-sm"
+            size="compact-xs"
             variant="default"
             loading={stop.isPending}
             leftSection={<Icon name="stop" size={14} />}
@@ -144,7 +100,7 @@ function Bar({ tryout, watching, onWatch, onClose }: BarProps): JSX.Element {
         ) : (
           <>
             {tryout.state === "failed" && <RestartButton tryout={tryout} />}
-            <Button size="compact-sm" variant="default" onClick={onClose}>
+            <Button size="compact-xs" variant="default" onClick={onClose}>
               {t("try.dismiss")}
             </Button>
           </>
@@ -191,7 +147,7 @@ function RestartButton({ tryout }: { readonly tryout: Tryout }): JSX.Element {
   const start = useStartTryout();
   return (
     <Button
-      size="compact-sm"
+      size="compact-xs"
       loading={start.isPending}
       onClick={() =>
         start.mutate({ studyKey: tryout.study_key, language: studyLanguage([language], language) })
