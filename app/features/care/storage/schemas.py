@@ -39,11 +39,12 @@ class StudyRoom(BaseModel):
 
     `mean_bytes`: of its `measured` completed sessions with movement, of the kind `measured_kind`:
     people's if there are any, since others may be shorter. `room_for`: how many more of these
-    fit before the disk warning; None if there are none, or the database is elsewhere.
+    fit before the disk warning; None if there are none, or the database is elsewhere. `title`: by
+    language.
     """
 
     key: str
-    title: str
+    title: dict[str, str]
     bytes: int
     sessions: int
     mean_bytes: int | None

@@ -84,11 +84,10 @@ def _study(
     rooms = [one.room for one in sessions]
     kind, measured = _typical([one.room for one in sessions if one.is_typical])
     mean = sum(room.bytes for room in measured) / len(measured) if measured else 0.0
-    titles = protocol_of(newest_version(db, study)).title
     left = max(0, disk.free_bytes - disk.warn_below_bytes)
     return StudyRoom(
         key=study.key,
-        title=titles.get("en") or next(iter(titles.values())),
+        title=dict(protocol_of(newest_version(db, study)).title),
         bytes=sum(room.bytes for room in rooms),
         sessions=len(rooms),
         mean_bytes=round(mean) if measured else None,

@@ -40,6 +40,7 @@ from app.models import Study, StudyVersion
 from app.platform.access import Caller, add_member, is_blind, visible_to
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
+from app.texts import chosen
 
 router = APIRouter(tags=["studies"])
 router.include_router(drafts)
@@ -182,8 +183,10 @@ def _summary(db: Session, study: Study, version: StudyVersion) -> StudySummary:
     protocol = protocol_of(version)
     return StudySummary(
         key=study.key,
-        title=protocol.title.get("en") or next(iter(protocol.title.values())),
-        description=protocol.description.get("en") or next(iter(protocol.description.values())),
+        title=chosen(protocol.title, "en"),
+        titles=dict(protocol.title),
+        description=chosen(protocol.description, "en"),
+        descriptions=dict(protocol.description),
         version=version.number,
         content_hash=version.content_hash,
         frozen=version.frozen_at is not None,

@@ -41,11 +41,17 @@ class VersionView(BaseModel):
 
 
 class StudySummary(BaseModel):
-    """The summary of a study, for the list of studies."""
+    """The summary of a study, for the list of studies.
+
+    `title` and `description` are in English if the study has it; `titles` and `descriptions` in
+    every language that it has.
+    """
 
     key: str
     title: str
+    titles: dict[str, str]
     description: str
+    descriptions: dict[str, str]
     version: int
     content_hash: str
     frozen: bool

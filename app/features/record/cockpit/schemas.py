@@ -361,7 +361,7 @@ class SessionView(SessionSummary):
 
     `sequence` and latencies are null if the reader is `blinded`. `avatar_configuration_hash`
     identifies the content of the physics avatar, `avatar_version` where it is found; both are null
-    for an avatar without physics. `alarms`: the open alarms, oldest
+    for an avatar without physics. `study_title`: by language. `alarms`: the open alarms, oldest
     first. `avatar_changes`: null until the running avatar is changed. `goals`: null unless the
     headset's program reports them. `calibration`: null before the first calibration begins or is
     ordered.
@@ -369,7 +369,7 @@ class SessionView(SessionSummary):
 
     blinded: bool
     study_key: str
-    study_title: str
+    study_title: dict[str, str]
     avatar: str
     avatar_configuration_hash: str | None
     avatar_version: NamedAvatar | None

@@ -78,7 +78,7 @@ def session_view(
         **listed.model_dump(exclude={"step"}),
         blinded=blinded,
         study_key=protocol.key,
-        study_title=chosen(protocol.title, "en"),
+        study_title=dict(protocol.title),
         avatar=session.avatar,
         avatar_configuration_hash=session.avatar_configuration_hash,
         avatar_version=_named_avatar(db, protocol, session),

@@ -30,6 +30,8 @@ STALE = timedelta(hours=12)
 MOST = 50
 Concern = Literal["left_open", "never_started", "not_valid", "ended_early"]
 _PEOPLE = KINDS[0]
+_Titles = dict[str, dict[str, str]]
+"""The titles of studies in each language, by the study's id."""
 
 
 class Progress(BaseModel):
@@ -46,11 +48,11 @@ class Progress(BaseModel):
 
 
 class SessionBrief(BaseModel):
-    """A session as a line of a list."""
+    """A session as a line of a list; `study_title`: by language."""
 
     session_id: str
     study_key: str
-    study_title: str
+    study_title: dict[str, str]
     participant_code: str
     kind: Literal["people", "simulated", "test", "expert"]
     status: Literal["planned", "active", "completed", "aborted", "withdrawn"]
@@ -77,17 +79,12 @@ def lab_state(
     """Return the state of the studies for which `visible` holds; raises nothing."""
     shown = Study.archived_at.is_(None) & visible
     studies = db.scalars(select(Study).where(shown).order_by(Study.key)).all()
-    titles = {study.id: _title(db, study) for study in studies}
+    titles = {study.id: dict(protocol_of(newest_version(db, study)).title) for study in studies}
     return LabState(
         studies=[_progress(db, study) for study in studies],
         today=_today(db, studies, titles, since),
         attention=_attention(db, studies, titles, now),
     )
-
-
-def _title(db: Session, study: Study) -> str:
-    title = protocol_of(newest_version(db, study)).title
-    return title.get("en") or next(iter(title.values()))
 
 
 def _progress(db: Session, study: Study) -> Progress:
@@ -117,7 +114,7 @@ def _progress(db: Session, study: Study) -> Progress:
 
 
 def _today(
-    db: Session, studies: Sequence[Study], titles: dict[str, str], since: datetime
+    db: Session, studies: Sequence[Study], titles: _Titles, since: datetime
 ) -> list[SessionBrief]:
     touched = or_(
         StudySession.created_at >= since,
@@ -132,7 +129,7 @@ def _today(
 
 
 def _attention(
-    db: Session, studies: Sequence[Study], titles: dict[str, str], now: datetime
+    db: Session, studies: Sequence[Study], titles: _Titles, now: datetime
 ) -> list[Attention]:
     concerns: dict[Concern, ColumnElement[bool]] = {
         "left_open": (StudySession.status == "active") & (StudySession.started_at < now - STALE),
@@ -170,9 +167,7 @@ def _sessions(
     return [(session, code, of[session.study_id]) for session, code in rows]
 
 
-def _brief(
-    session: StudySession, code: str, study: Study, titles: dict[str, str]
-) -> dict[str, object]:
+def _brief(session: StudySession, code: str, study: Study, titles: _Titles) -> dict[str, object]:
     return {
         "session_id": session.id,
         "study_key": study.key,

@@ -36,7 +36,7 @@ export function UseInStudy(props: UseInStudyProps): JSX.Element {
   const templates = useQuery(templatesQuery);
   const fromStudies = (existing.data ?? []).map((one) => ({
     value: STUDY + one.key,
-    label: one.title,
+    label: inLanguage(one.titles, language),
   }));
   const fromTemplates = (templates.data ?? []).map((one) => ({
     value: TEMPLATE + one.key,

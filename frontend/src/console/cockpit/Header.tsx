@@ -3,6 +3,7 @@
 import { ActionIcon, Button, Tooltip } from "@mantine/core";
 import type { FeedState } from "@shared/api/live";
 import type { SessionView } from "@shared/api/types";
+import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useState } from "react";
 import { Link } from "wouter";
@@ -28,14 +29,16 @@ interface HeaderProps {
 
 export function Header(props: HeaderProps): JSX.Element {
   const { session, feed, onChecks, onReceipt, onLog, onHelp } = props;
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   const can = usePermissions();
   return (
     <div className={classes.head}>
       <div className={classes.who}>
         <h1 className={classes.participant}>{session.participant_code}</h1>
         <div className={classes.study}>
-          <Link href={`/studies/${session.study_key}/sessions`}>{session.study_title}</Link>
+          <Link href={`/studies/${session.study_key}/sessions`}>
+            {inLanguage(session.study_title, language)}
+          </Link>
           {" · "}
           {t("study.version", { version: session.study_version })}
           {session.slot !== null && ` · ${t("head.slot", { number: session.slot.index + 1 })}`}

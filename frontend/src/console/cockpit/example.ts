@@ -46,7 +46,7 @@ export const at = (index: number, more: Partial<Current> = {}): Current => ({
 export const session: SessionView = {
   id: "s",
   study_key: "study",
-  study_title: "Study",
+  study_title: { en: "Study", de: "Studie" },
   study_version: 1,
   participant_code: "P-1",
   kind: "people",

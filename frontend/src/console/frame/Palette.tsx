@@ -9,6 +9,7 @@ import {
   useMantineColorScheme,
 } from "@mantine/core";
 import type { Account } from "@shared/api/types";
+import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { useQueries, useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useState } from "react";
@@ -138,11 +139,11 @@ function useEntries(account: Account, address: string): readonly Entry[] {
     ),
   ];
   const studies = listed.map(
-    ({ key, title }): Entry => ({
+    ({ key, titles }): Entry => ({
       kind: "studies",
       id: `study ${key}`,
       icon: "document",
-      title,
+      title: inLanguage(titles, language),
       about: key,
       go: `/studies/${encodeURIComponent(key)}`,
     }),
@@ -154,7 +155,7 @@ function useEntries(account: Account, address: string): readonly Entry[] {
         id: session.id,
         icon: "people",
         title: session.participant_code,
-        about: `${t(`status.${session.status}`)} · ${listed[at]?.title ?? ""}`,
+        about: `${t(`status.${session.status}`)} · ${inLanguage(listed[at]?.titles, language)}`,
         go: `/sessions/${session.id}`,
       }),
     ),

@@ -1,6 +1,7 @@
 /** The one navigation: Run, Results, Design and Lab, with the current page marked. */
 import { ActionIcon, Menu, Tooltip } from "@mantine/core";
 import type { Account } from "@shared/api/types";
+import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { Mark } from "@shared/ui/Mark";
 import { useQuery } from "@tanstack/react-query";
@@ -218,7 +219,7 @@ function StudyChoice({
   readonly study: CurrentStudy | null;
   readonly named: boolean;
 }): JSX.Element {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   const [address, navigate] = useLocation();
   const query = useQuery(studiesQuery);
   const listed = query.data ?? [];
@@ -247,14 +248,14 @@ function StudyChoice({
       </Menu.Target>
       <Menu.Dropdown>
         <Menu.Label>{t("frame.study.choose")}</Menu.Label>
-        {listed.map(({ key, title }) => (
+        {listed.map(({ key, titles }) => (
           <Menu.Item
             key={key}
             aria-current={key === study?.key ? "true" : undefined}
             rightSection={key === study?.key ? <Icon name="check" size={15} /> : null}
             onClick={() => navigate(`/studies/${encodeURIComponent(key)}/${section}`)}
           >
-            {title}
+            {inLanguage(titles, language)}
           </Menu.Item>
         ))}
       </Menu.Dropdown>

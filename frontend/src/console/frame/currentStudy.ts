@@ -1,6 +1,9 @@
 /** The study whose sections the sidebar shows: the open one, else the one that was open last. */
+
+import { inLanguage } from "@shared/text";
 import { useQuery } from "@tanstack/react-query";
 import { useEffect } from "react";
+import { useTexts } from "../i18n";
 import { sessionQuery, studiesQuery } from "../queries";
 import { studyIn } from "./places";
 
@@ -21,6 +24,7 @@ export interface CurrentStudy {
  * A session belongs to its study, which its page has requested anyway.
  */
 export function useCurrentStudy(address: string): CurrentStudy | null {
+  const { language } = useTexts();
   const listed = useQuery(studiesQuery).data;
   const id = /^\/sessions\/([^/?]+)/.exec(address)?.[1];
   const session = useQuery({ ...sessionQuery(id ?? ""), enabled: false }).data;
@@ -33,5 +37,6 @@ export function useCurrentStudy(address: string): CurrentStudy | null {
     key !== null && (listed === undefined || listed.some((study) => study.key === key));
   const key = open ?? (known(last) ? last : (listed?.[0]?.key ?? null));
   if (key === null) return null;
-  return { key, title: listed?.find((study) => study.key === key)?.title ?? null };
+  const found = listed?.find((study) => study.key === key);
+  return { key, title: found === undefined ? null : inLanguage(found.titles, language) };
 }

@@ -3,6 +3,7 @@ import { Button, Title } from "@mantine/core";
 import { studies } from "@shared/api/endpoints";
 import type { Demo } from "@shared/api/housekeeping";
 import type { StudySummary } from "@shared/api/types";
+import { inLanguage } from "@shared/text";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
@@ -151,7 +152,7 @@ interface StepProps {
 
 function Step(props: StepProps): JSX.Element | null {
   const { step, icon, permission, isFirst = false, isBusy, error, study, onChoose } = props;
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   const can = usePermissions();
   if (!can(permission)) return null;
   const body: Key = `${step}.body`;
@@ -159,7 +160,9 @@ function Step(props: StepProps): JSX.Element | null {
     <div className={classes.step}>
       <p>{t(body)}</p>
       {study != null && (
-        <span className={classes.stepStudy}>{t("home.step.study", { title: study.title })}</span>
+        <span className={classes.stepStudy}>
+          {t("home.step.study", { title: inLanguage(study.titles, language) })}
+        </span>
       )}
       {error !== null && <Failure error={error} />}
       <Button

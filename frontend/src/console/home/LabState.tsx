@@ -2,6 +2,7 @@
 import { Title } from "@mantine/core";
 import type { Attention, SessionBrief, LabState as State } from "@shared/api/housekeeping";
 import { dateTime, timeOfDay } from "@shared/format";
+import { inLanguage } from "@shared/text";
 import type { JSX, ReactNode } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
@@ -70,13 +71,14 @@ interface LineProps {
 }
 
 function Line({ session, at, children }: LineProps): JSX.Element {
+  const { language } = useTexts();
   return (
     <li className={classes.line}>
       <Link href={`/sessions/${session.session_id}`} title={session.participant_code}>
         {session.participant_code}
       </Link>
       <span className={classes.marks}>{children}</span>
-      <span className={`${classes.when} numbers`} title={session.study_title}>
+      <span className={`${classes.when} numbers`} title={inLanguage(session.study_title, language)}>
         {at}
       </span>
     </li>

@@ -3,6 +3,7 @@ import { Button, Code, Progress, Text, Title } from "@mantine/core";
 import type { LabState as LabStateData } from "@shared/api/housekeeping";
 import type { StudySummary } from "@shared/api/types";
 import { day } from "@shared/format";
+import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
@@ -133,7 +134,7 @@ function Card({ study, progress }: CardProps): JSX.Element {
   return (
     <Link href={`/studies/${study.key}`} className={classes.card ?? ""}>
       <div>
-        <div className={classes.title}>{study.title}</div>
+        <div className={classes.title}>{inLanguage(study.titles, language)}</div>
         <div className={classes.version}>
           <span>{t("study.version", { version: study.version })}</span>
           <span>
@@ -143,7 +144,7 @@ function Card({ study, progress }: CardProps): JSX.Element {
           <span>{day(study.created_at, language)}</span>
         </div>
       </div>
-      <p className={classes.about}>{study.description}</p>
+      <p className={classes.about}>{inLanguage(study.descriptions, language)}</p>
       <div className={`${home.progress} numbers`}>
         {progress !== undefined && <ProgressLine study={study} progress={progress} />}
       </div>

@@ -6,6 +6,7 @@ import type { SessionView } from "@shared/api/types";
 import type { CameraMode, CameraSide } from "@shared/stage/figure";
 import type { StageHandle } from "@shared/stage/Stage";
 import { usePlayback } from "@shared/stage/usePlayback";
+import { inLanguage } from "@shared/text";
 import { seconds } from "@shared/units";
 import { type JSX, type ReactNode, useMemo, useRef, useState } from "react";
 import { DrawnAs } from "../bodyView/DrawnAs";
@@ -97,7 +98,7 @@ interface PlayingProps extends PlayerProps {
 const CAMERAS: readonly CameraMode[] = ["orbit", "follow", "eyes"];
 
 function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element {
-  const { t } = useTexts();
+  const texts = useTexts();
   const duration = seconds(Math.max(...lanes.map(({ replay }) => replay.duration_s)));
   const playback = usePlayback(duration, { time: seconds(params.time), loop: false });
   const [mode, setMode] = useLocalStorage<CameraMode>({
@@ -171,7 +172,7 @@ function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element
                 stages={staged}
                 playback={playback}
                 duration={duration}
-                words={filmWords(session, lanes, t)}
+                words={filmWords(session, lanes, texts)}
                 name={filmName(session, params, playback.time)}
               />
             )
@@ -190,12 +191,12 @@ function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element
 function filmWords(
   session: SessionView,
   lanes: readonly Lane[],
-  t: ReturnType<typeof useTexts>["t"],
+  { t, language }: ReturnType<typeof useTexts>,
 ): Omit<FilmWords, "time"> {
   const isPeople = session.kind === "people" || session.kind === "expert";
   return {
     names: lanes.filter(({ movement }) => movement !== null).map(({ label }) => label),
-    about: `${session.study_title} · ${session.participant_code}`,
+    about: `${inLanguage(session.study_title, language)} · ${session.participant_code}`,
     mark: isPeople ? null : t(`film.mark.${session.kind === "test" ? "test" : "simulated"}`),
   };
 }

@@ -1,6 +1,7 @@
 /** Each study with its size, the mean of a session, and how many more fit. */
 import { DEMO_KEY, type StorageRoom, type StudyRoom } from "@shared/api/housekeeping";
 import { bytes, day, number } from "@shared/format";
+import { inLanguage } from "@shared/text";
 import type { JSX } from "react";
 import { Link } from "wouter";
 import { RemoveDemo } from "../home/DemoControls";
@@ -47,7 +48,7 @@ function StudyRow({ study }: { readonly study: StudyRoom }): JSX.Element {
   return (
     <tr>
       <td>
-        <Link href={`/studies/${study.key}/sessions`}>{study.title}</Link>
+        <Link href={`/studies/${study.key}/sessions`}>{inLanguage(study.title, language)}</Link>
         <span className={classes.about}>{study.key}</span>
         {isRemovable && <RemoveDemo />}
       </td>

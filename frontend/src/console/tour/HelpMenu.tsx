@@ -3,6 +3,7 @@ import { ActionIcon, Menu } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { studies } from "@shared/api/endpoints";
 import type { StudySummary } from "@shared/api/types";
+import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { describe } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
@@ -122,12 +123,14 @@ interface StudyHintProps {
 
 /** What an entry does, and with which study. */
 function StudyHint({ study, isKnown, hint }: StudyHintProps): JSX.Element {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   return (
     <>
       <span className={classes.hint}>{study === null && isKnown ? t("help.noStudy") : hint}</span>
       {study !== null && (
-        <span className={classes.hint}>{t("home.step.study", { title: study.title })}</span>
+        <span className={classes.hint}>
+          {t("home.step.study", { title: inLanguage(study.titles, language) })}
+        </span>
       )}
     </>
   );

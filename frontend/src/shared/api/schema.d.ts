@@ -3996,7 +3996,9 @@ export interface components {
             /** Study Key */
             readonly study_key: string;
             /** Study Title */
-            readonly study_title: string;
+            readonly study_title: {
+                readonly [key: string]: string;
+            };
         };
         /**
          * AuditCheckView
@@ -11011,7 +11013,7 @@ export interface components {
         };
         /**
          * SessionBrief
-         * @description A session as a line of a list.
+         * @description A session as a line of a list; `study_title`: by language.
          */
         readonly SessionBrief: {
             /**
@@ -11036,7 +11038,9 @@ export interface components {
             /** Study Key */
             readonly study_key: string;
             /** Study Title */
-            readonly study_title: string;
+            readonly study_title: {
+                readonly [key: string]: string;
+            };
         };
         /**
          * SessionCompanion
@@ -11225,7 +11229,7 @@ export interface components {
          *
          *     `sequence` and latencies are null if the reader is `blinded`. `avatar_configuration_hash`
          *     identifies the content of the physics avatar, `avatar_version` where it is found; both are null
-         *     for an avatar without physics. `alarms`: the open alarms, oldest
+         *     for an avatar without physics. `study_title`: by language. `alarms`: the open alarms, oldest
          *     first. `avatar_changes`: null until the running avatar is changed. `goals`: null unless the
          *     headset's program reports them. `calibration`: null before the first calibration begins or is
          *     ordered.
@@ -11297,7 +11301,9 @@ export interface components {
             /** Study Key */
             readonly study_key: string;
             /** Study Title */
-            readonly study_title: string;
+            readonly study_title: {
+                readonly [key: string]: string;
+            };
             /** Study Version */
             readonly study_version: number;
             /** Time Scale */
@@ -12225,7 +12231,8 @@ export interface components {
          *
          *     `mean_bytes`: of its `measured` completed sessions with movement, of the kind `measured_kind`:
          *     people's if there are any, since others may be shorter. `room_for`: how many more of these
-         *     fit before the disk warning; None if there are none, or the database is elsewhere.
+         *     fit before the disk warning; None if there are none, or the database is elsewhere. `title`: by
+         *     language.
          */
         readonly StudyRoom: {
             /** Bytes */
@@ -12243,11 +12250,16 @@ export interface components {
             /** Sessions */
             readonly sessions: number;
             /** Title */
-            readonly title: string;
+            readonly title: {
+                readonly [key: string]: string;
+            };
         };
         /**
          * StudySummary
          * @description The summary of a study, for the list of studies.
+         *
+         *     `title` and `description` are in English if the study has it; `titles` and `descriptions` in
+         *     every language that it has.
          */
         readonly StudySummary: {
             /** Archived At */
@@ -12261,6 +12273,10 @@ export interface components {
             readonly created_at: string;
             /** Description */
             readonly description: string;
+            /** Descriptions */
+            readonly descriptions: {
+                readonly [key: string]: string;
+            };
             /** Frozen */
             readonly frozen: boolean;
             /** Key */
@@ -12271,6 +12287,10 @@ export interface components {
             };
             /** Title */
             readonly title: string;
+            /** Titles */
+            readonly titles: {
+                readonly [key: string]: string;
+            };
             /** Version */
             readonly version: number;
         };
@@ -12294,6 +12314,10 @@ export interface components {
             readonly created_at: string;
             /** Description */
             readonly description: string;
+            /** Descriptions */
+            readonly descriptions: {
+                readonly [key: string]: string;
+            };
             /** Frozen */
             readonly frozen: boolean;
             /** Key */
@@ -12316,6 +12340,10 @@ export interface components {
             };
             /** Title */
             readonly title: string;
+            /** Titles */
+            readonly titles: {
+                readonly [key: string]: string;
+            };
             /** Version */
             readonly version: number;
             /** Versions */

@@ -182,3 +182,17 @@ def test_a_version_that_began_before_another_is_refused_once(fresh_lab: Lab) -> 
     assert ok(fresh_lab.operator.post(place, json=late))["version"] == 3
     late["based_on"] = 2
     assert ok(fresh_lab.operator.post(place, json=late))["version"] == 3
+
+
+@pytest.mark.one_engine
+def test_a_study_is_named_in_each_of_its_languages_wherever_it_is_listed(lab: Lab) -> None:
+    """Lists, the first page, a session and the storage have its title in every language."""
+    view = lab.join()
+    (study,) = (one for one in ok(lab.operator.get("/api/studies")) if one["key"] == STUDY)
+    titles = study["titles"]
+    assert set(titles) == {"en", "de"}
+    assert (study["title"], study["description"]) == (titles["en"], study["descriptions"]["en"])
+    today = ok(lab.operator.get("/api/lab", params={"since": "2020-01-01T00:00:00Z"}))["today"]
+    room = ok(lab.operator.get("/api/storage"))
+    (stored,) = (one["title"] for one in room["studies"] if one["key"] == STUDY)
+    assert view["study_title"] == today[0]["study_title"] == stored == titles

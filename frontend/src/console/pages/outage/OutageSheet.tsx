@@ -1,5 +1,6 @@
 import type { SessionView, Step } from "@shared/api/types";
 import { dateTime, duration, latency } from "@shared/format";
+import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { milliseconds, seconds } from "@shared/units";
 import { useQuery } from "@tanstack/react-query";
@@ -54,7 +55,7 @@ function Sheet({ session }: { readonly session: SessionView }): JSX.Element {
       <header>
         <p className={classes.kicker}>
           {t("outage.made", {
-            study: session.study_title,
+            study: inLanguage(session.study_title, language),
             version: session.study_version,
             when: dateTime(now, language),
           })}

@@ -1,6 +1,7 @@
 /** The role of an account, and which studies it may see. */
 import { Group, MultiSelect, Radio, Stack } from "@mantine/core";
 import type { Role, StudyKeys } from "@shared/api/people";
+import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
@@ -69,9 +70,9 @@ interface StudiesChoiceProps {
 
 /** Which studies an account may see: all, including future ones, or only these. */
 export function StudiesChoice({ studies, onChange }: StudiesChoiceProps): JSX.Element {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   const studyList = useQuery(studiesQuery).data ?? [];
-  const titles = new Map(studyList.map(({ key, title }) => [key, title]));
+  const titles = new Map(studyList.map(({ key, titles: of }) => [key, inLanguage(of, language)]));
   // Archived studies are not listed, but stay assigned.
   const keys = [...new Set([...titles.keys(), ...(studies ?? [])])];
   return (

@@ -25,7 +25,7 @@ interface StudyHeadProps {
 export function StudyHead({ study, section, children }: StudyHeadProps): JSX.Element {
   const { t, language } = useTexts();
   const can = usePermissions();
-  const title = study.protocol === null ? study.title : inLanguage(study.protocol.title, language);
+  const title = inLanguage(study.titles, language);
   const isOverview = section.section === "overview";
   useTitle(isOverview ? title : `${t(section.name)} · ${title}`);
   return (
