@@ -62,7 +62,7 @@ def test_equal_values_have_no_trend() -> None:
     """If everybody's values are equal, there is nothing to rank, as Friedman's test says, too."""
     equal = np.repeat([[1.0], [2.0], [3.0], [4.0]], 3, axis=1)
     for test in (page_trend, friedman):
-        with pytest.raises(ConstantData, match="4 subjects .* nothing to rank"):
+        with pytest.raises(ConstantData, match=r"4 subjects .* nothing to rank"):
             test(equal)
     equal[0, 2] = 5.0
     assert page_trend(equal).p_given_ties == pytest.approx(1 / 3)
