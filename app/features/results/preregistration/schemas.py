@@ -1,10 +1,11 @@
-"""Response models of a preregistration, its result and the deviations."""
+"""Models of a preregistration's queries, and of the answers: its result and the deviations."""
 
 from datetime import datetime
 from typing import Literal
 
-from pydantic import BaseModel
+from pydantic import BaseModel, ConfigDict
 
+from app.features.results.analysis import DashboardKind
 from app.protocol import Preregistration, PrimaryNames
 
 DeviationCode = Literal[
@@ -21,6 +22,20 @@ DeviationCode = Literal[
     "not_registered",
     "exploratory",
 ]
+
+
+class PreregistrationQuery(BaseModel):
+    """The query of a preregistration: the kind of sessions."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    kind: DashboardKind = "people"
+
+
+class ReportQuery(PreregistrationQuery):
+    """The query of its report, which has one of two forms."""
+
+    form: Literal["markdown", "json"] = "markdown"
 
 
 class DeclarationView(BaseModel):

@@ -26,6 +26,7 @@ from app.models import (
     Submission,
 )
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
+from tests.features.lab import Lab, error
 from tests.protocol.helpers import STUDY as FILE
 from tests.protocol.test_preregistration import SECTION
 
@@ -200,8 +201,8 @@ def test_an_erased_person_is_in_no_test_and_no_mean(database: Database) -> None:
     forget(database, "P4")
     view = view_of(database)
     assert (view.sessions, view.included) == (4, 3)
-    assert view.result is not None
-    assert view.result.n == 3
+    # Everybody has as many in every condition.
+    assert view.result is None
     assert [(one.participant_code, one.reason) for one in view.excluded] == [
         ("P4", "the participant’s data were erased")
     ]
@@ -248,3 +249,13 @@ def test_a_limb_that_nobody_used_is_not_left_out_silently(database: Database) ->
     view = view_of(database)
     assert view.result is None
     assert view.why_no_result
+
+
+@pytest.mark.one_engine
+@pytest.mark.parametrize("path", ["preregistration", "preregistration/report"])
+def test_an_unknown_parameter_is_refused(lab: Lab, path: str) -> None:
+    """A parameter that does not exist is refused, as on the dashboard, and not passed over."""
+    address = f"/api/studies/{STUDY}/{path}"
+    assert lab.operator.get(address, params={"kind": "test"}).status_code == 200
+    refusal = error(lab.operator.get(address, params={"format": "zz"}), 422, "invalid_input")
+    assert [one["message"] for one in refusal["details"]] == ["Extra inputs are not permitted"]
