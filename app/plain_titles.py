@@ -69,9 +69,12 @@ NO_NAMES: Final = frozenset(
 )
 """Words that YAML, pandas or R read as nothing, or as yes or no."""
 
+LONGEST_TITLE: Final = 200
+"""In characters."""
+
 PlainTitle = Annotated[
     str,
-    StringConstraints(strip_whitespace=True, min_length=1, max_length=200),
+    StringConstraints(strip_whitespace=True, min_length=1, max_length=LONGEST_TITLE),
     AfterValidator(plain),
 ]
 """A title of up to 200 characters, of which none is a control character or turns writing around."""

@@ -134,7 +134,7 @@ def _missing(path: Path, schema: Schema) -> DefinitionProblem:
     if isinstance(path[-1], int):
         message = f"The list ends after {path[-1]} values."
         return DefinitionProblem(path, message, remedy="Add the missing values.")
-    remedy = f"Add {path[-1]}" + (f": {description}." if _is_short(description) else ".")
+    remedy = f"Add {path[-1]}" + (f": {_clause(description)}." if _is_short(description) else ".")
     return DefinitionProblem(path, f"The key {path[-1]!r} is missing.", None, description, remedy)
 
 
@@ -180,7 +180,7 @@ def _other(path: Path, details: ErrorDetails, schema: Schema) -> DefinitionProbl
     if "const" in schema:
         valid = schema["const"]
     words = ", ".join(map(str, valid)) if isinstance(valid, list) else valid
-    remedy = f"Valid: {words}." if words else "Correct it."
+    remedy = f"Valid: {_clause(words)}." if words else "Correct it."
     if details["type"] in ("too_short", "too_long"):
         limits = (("at least", context.get("min_length")), ("at most", context.get("max_length")))
         valid = " and ".join(f"{words} {limit}" for words, limit in limits if limit is not None)
@@ -239,6 +239,11 @@ def _named(value: object) -> str:
     names = {dict: "a mapping", list: "a list", type(None): "nothing", bool: "true or false"}
     kind = names.get(type(value))
     return kind or repr(value)[:80]
+
+
+def _clause(description: object) -> str:
+    """Return a description without its full stop, for the end of a sentence that has its own."""
+    return str(description).removesuffix(".")
 
 
 def _is_short(description: object) -> bool:

@@ -14,7 +14,7 @@ from typing import Generic, TypeVar, cast
 
 from pydantic import TypeAdapter, ValidationError
 
-from app.plain_titles import not_plain
+from app.plain_titles import LONGEST_TITLE, not_plain
 from app.protocol.assumptions import Assumptions, assumption_problems
 from app.protocol.common import canonical_json, sha256_of
 from app.protocol.cross import ConfigurationOf, cross_problems
@@ -84,7 +84,7 @@ def load_study(
     """
     source = study_source(text)
     between = cross_problems(source.tree, _STUDY.schema, instruments, avatars, bodies, configured)
-    found = [locate(one, source) for one in between]
+    found = [locate(one, source) for one in (*between, *_long_titles(source.tree))]
     protocol = _validated(_STUDY, source, found)
     canonical = canonical_json(_STUDY.adapter.dump_python(protocol, mode="json"))
     return LoadedStudy(with_avatar_lines(protocol), sha256_of(canonical), canonical)
@@ -106,7 +106,8 @@ def load_instrument(text: str) -> LoadedInstrument:
     Results are cached by text: whenever a study is loaded, so are its instruments.
     """
     source = read_source(text)
-    found = [locate(one, source) for one in _titles_that_are_not_plain(source.tree)]
+    wrong = (*_titles_that_are_not_plain(source.tree), *_long_titles(source.tree))
+    found = [locate(one, source) for one in wrong]
     instrument = _validated(_INSTRUMENT, source, found)
     canonical = canonical_json(instrument_as_json(instrument))
     return LoadedInstrument(instrument, sha256_of(canonical), canonical)
@@ -135,6 +136,23 @@ def _titles_that_are_not_plain(tree: Plain) -> Iterator[DefinitionProblem]:
                 f"The title ({language}) is not plain text. {problem}",
                 text,
                 remedy="Remove the character, or type the title again.",
+            )
+
+
+def _long_titles(tree: Plain) -> Iterator[DefinitionProblem]:
+    """Yield a problem for each title that is too long for a page.
+
+    Only of files: what was stored with such a title before stays readable.
+    """
+    title = tree.get("title") if isinstance(tree, dict) else None
+    for language, text in title.items() if isinstance(title, dict) else ():
+        if isinstance(text, str) and len(text) > LONGEST_TITLE:
+            yield DefinitionProblem(
+                ("title", language),
+                f"The title ({language}) has {len(text)} characters.",
+                text,
+                f"at most {LONGEST_TITLE} characters",
+                "Shorten it; the description has room for more.",
             )
 
 

@@ -39,15 +39,17 @@ Path = tuple[str | int, ...]
 Plain = None | bool | int | float | str | list["Plain"] | dict[str, "Plain"]
 
 _CORE_TAGS = frozenset(f"tag:yaml.org,2002:{kind}" for kind in ("map", "seq", "str"))
+_SHOWN_DIGITS = 20
 _ONE_WAY = "Write the value out at each place where it is needed."
 
 
 @dataclass(frozen=True)
 class ScalarProblem:
-    """The reason why a scalar is invalid, and the remedy."""
+    """The reason why a scalar is invalid, what is `valid` if that is known, and the remedy."""
 
     message: str
     remedy: str
+    valid: str | None = None
 
 
 def scalar_problem(text: str, *, plain: bool) -> ScalarProblem | None:
@@ -67,14 +69,17 @@ def scalar_problem(text: str, *, plain: bool) -> ScalarProblem | None:
             f"{text} is not a finite number.", "Give a number, or put the word in quotes."
         )
     if _NUMBER.fullmatch(text) and not _is_representable(text):
+        is_whole = _INTEGER.fullmatch(text) is not None
         most = (
             f"Whole numbers go up to {MAX_INTEGER}"
-            if _INTEGER.fullmatch(text)
+            if is_whole
             else f"Numbers go up to {sys.float_info.max:.3g} and have {_MAX_DIGITS} characters at"
             " most"
         )
         return ScalarProblem(
-            f"The number {text[:20]} is too large.", f"{most}; put it in quotes if it is a text."
+            f"The number {text[:_SHOWN_DIGITS]}{'...' * (len(text) > _SHOWN_DIGITS)} is too large.",
+            f"{most}; put it in quotes if it is a text.",
+            f"at most {MAX_INTEGER if is_whole else f'{sys.float_info.max:.3g}'}",
         )
     return None
 
@@ -300,7 +305,7 @@ class _Builder:
         plain = bool(event.implicit[0]) and event.tag is None
         problem = scalar_problem(event.value, plain=plain)
         if problem is not None:
-            self._add(event, path, problem.message, problem.remedy, event.value[:80])
+            self._add(event, path, problem.message, problem.remedy, event.value[:80], problem.valid)
             self._source.refused.add(path)
             return None
         return scalar_value(event.value) if plain else str(event.value)
@@ -325,13 +330,17 @@ class _Builder:
             )
 
     def _add(
-        self, event: yaml.Event, path: Path, message: str, remedy: str, value: object = None
+        self,
+        event: yaml.Event,
+        path: Path,
+        message: str,
+        remedy: str,
+        value: object = None,
+        valid: object = None,
     ) -> None:
         mark = _mark(event)
         self._source.problems.append(
-            ConfigProblem(
-                path_text(path), mark.line, mark.column, message, value=value, remedy=remedy
-            )
+            ConfigProblem(path_text(path), mark.line, mark.column, message, value, valid, remedy)
         )
 
     def _refusal(self, event: yaml.Event, path: Path, message: str, remedy: str) -> ConfigError:

@@ -1,14 +1,16 @@
 """Browser tests of a first visit: no network, wrong URLs, unusual codes, unknown files."""
 
+import re
 from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Page, expect
 
+from app.resources import study_configs_dir
 from tests.e2e.people import Experimenter
-from tests.features.lab import STUDY
+from tests.features.lab import STUDY, ok
 from tests.support.browser import ColorScheme, PageWatch
-from tests.support.server import LiveServer
+from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 Axe = Callable[[Page], list[str]]
 Screenshot = Callable[[Page, str], object]
@@ -77,6 +79,36 @@ def test_an_unknown_url_shows_page_not_found(
     screenshot(page, "nothing-here")
     page.get_by_role("link", name="Go to studies").click()
     expect(page.get_by_role("heading", name="Studies", exact=True)).to_be_visible()
+
+
+def test_a_title_without_spaces_wraps(
+    running_server: LiveServer, experimenter: Experimenter
+) -> None:
+    """A title that is one word of the greatest length makes no page wider than the window."""
+    word = "x" * 200
+    folder = study_configs_dir()
+    study = (folder / f"{STUDY}.yaml").read_text(encoding="utf-8")
+    study = study.replace(f"key: {STUDY}", "key: one-word", 1)
+    study = study.replace("en: Acting through another body", f"en: {word}", 1)
+    form = (folder / "instruments" / "fms.yaml").read_text(encoding="utf-8")
+    form = re.sub(r"(?m)^title:\n  en: .*$", f"title:\n  en: {word}", form)
+    form = form.replace("key: fms", "key: one_word", 1)
+    with running_server.client() as client:
+        ok(client.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
+        ok(client.post("/api/studies", json={"yaml": study}))
+        ok(client.post("/api/instruments", json={"yaml": form}))
+    page = experimenter.page
+    page.reload()
+    for address in (
+        "",
+        *(f"studies/one-word{tab}" for tab in ("", "/sessions", "/protocol")),
+        "instruments",
+        "instruments/one_word",
+    ):
+        page.goto(f"{running_server.url}/#/{address}")
+        expect(page.get_by_text(word).first).to_be_visible()
+        width = page.evaluate("document.documentElement.scrollWidth")
+        assert width <= 1280, (address, width)
 
 
 def test_a_code_that_is_too_long_is_reported(experimenter: Experimenter) -> None:

@@ -1,8 +1,13 @@
 """Tests that all problems of an invalid study file are reported with place and remedy."""
 
+import json
+import re
+
 import pytest
 
-from tests.protocol.helpers import edited, problems
+from app.protocol import ConfigError, load_instrument, parse_study_json
+from app.resources import study_configs_dir
+from tests.protocol.helpers import STUDY, edited, loaded, problems
 
 
 @pytest.mark.parametrize(
@@ -135,6 +140,55 @@ def test_an_unknown_key_lists_the_valid_ones() -> None:
     """The problem of an unknown key lists the valid keys."""
     (problem,) = problems(edited(("when_full: grow", "full: grow\n  when_full: grow")))
     assert problem.valid == ["design", "replicates", "seed", "sequences", "when_full"]
+
+
+def test_a_title_too_long_for_a_page_says_how_long_it_may_be() -> None:
+    """A title of a study or an instrument may have 200 characters, in each language."""
+    long = edited(("  en: Acting through another body", f"  en: {'x' * 201}"))
+    (problem,) = problems(long)
+    assert (problem.path, problem.message) == ("title.en", "The title (en) has 201 characters.")
+    assert str(problem.value).startswith("xxx")
+    assert problem.valid == "at most 200 characters"
+    assert problem.remedy.startswith("Shorten it")
+    assert loaded(long.replace("x" * 201, "x" * 200)).protocol.title["en"] == "x" * 200
+    shipped = (study_configs_dir() / "instruments" / "fms.yaml").read_text(encoding="utf-8")
+    wordy = re.sub(r"(?m)^title:\n  en: .*$", f"title:\n  en: {'x' * 201}", shipped)
+    assert wordy != shipped
+    with pytest.raises(ConfigError) as refused:
+        load_instrument(wordy)
+    assert [one.path for one in refused.value.problems] == ["title.en"]
+
+
+def test_a_stored_study_with_a_long_title_stays_readable() -> None:
+    """A study that was stored with a longer title, when there was no limit, can still be read."""
+    stored = json.loads(loaded(STUDY).canonical_json)
+    stored["title"]["en"] = "x" * 10_000
+    assert parse_study_json(json.dumps(stored)).title["en"] == "x" * 10_000
+
+
+@pytest.mark.parametrize(
+    ("given", "valid"),
+    [
+        ("1" + 40 * "0", "at most 9007199254740991"),
+        ("1e400", "at most 1.8e+308"),
+    ],
+)
+def test_a_number_that_is_too_large_says_what_is_valid(given: str, valid: str) -> None:
+    """A number that is too large is reported with the numbers that are valid."""
+    (problem,) = problems(edited(("seed: 20200415", f"seed: {given}")))
+    assert problem.path == "orders.seed"
+    assert problem.message.endswith("is too large.")
+    assert problem.valid == valid
+    assert valid.rpartition(" ")[2] in problem.remedy
+
+
+def test_a_missing_section_ends_with_one_full_stop() -> None:
+    """The remedy for a missing section quotes its description, which ends with a full stop."""
+    before, _, rest = STUDY.partition("provenance:\n")
+    (problem,) = problems(before + re.sub(r"\A(?:[ ].*\n)+", "", rest))
+    assert problem.path == "provenance"
+    assert problem.remedy.endswith("how far they were verified.")
+    assert ".." not in problem.remedy
 
 
 def test_all_problems_are_reported_in_the_order_of_the_file() -> None:
