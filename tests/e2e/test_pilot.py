@@ -45,7 +45,18 @@ def test_a_pilot_is_started_read_and_deleted(
     page.goto(f"{server.url}/#/studies/{KEY}/pilot")
     expect(page.get_by_role("heading", name="No pilot yet")).to_be_visible()
     assert axe(page) == []
+    power = page.get_by_role("form", name="Power of the test")
+    assumptions = page.get_by_label("Assumptions (YAML)")
+    expect(assumptions).to_be_hidden()
+    expect(power.get_by_text("What is assumed of people’s answers is missing")).to_be_visible()
+    expect(power.get_by_role("button", name="Start")).to_be_disabled()
+    power.get_by_role("button", name="Insert an example").click()
+    expect(assumptions).to_contain_text("latency_200")
+    expect(power.get_by_role("button", name="Start")).to_be_enabled()
+    assert axe(page) == []
+    screenshot(page, "pilot-example")
     cohort = page.get_by_role("form", name="Simulated people")
+    cohort.get_by_label("Also simulate the power").uncheck()
     cohort.get_by_label("People").fill("2")
     cohort.get_by_role("button", name="Start").click()
     shown = page.get_by_role("region", name="The pilot that is shown")

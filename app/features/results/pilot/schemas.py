@@ -70,6 +70,7 @@ class PilotDefaults(BaseModel):
     `numbers`: participants of a power run, around the planned number. `most_participants`: places
     of a closed ledger; null if it grows. `assumptions`: the file that comes with the product for
     this study, null if there is none; `assumptions_trouble`: why that one does not fit the version.
+    `example`: a file made for the study, whose numbers are to be replaced; null if there is none.
     """
 
     version: int
@@ -79,6 +80,7 @@ class PilotDefaults(BaseModel):
     most_participants: int | None
     assumptions: str | None
     assumptions_trouble: str | None
+    example: str | None
 
 
 class PilotProgress(BaseModel):

@@ -15,6 +15,7 @@ from app.features.design.studies import (
     used_instrument,
 )
 from app.features.movement.jobs import JobKind
+from app.features.results.pilot.example import example_assumptions
 from app.features.results.pilot.folder import NOT_BEGUN
 from app.features.results.pilot.order import (
     Kind,
@@ -83,6 +84,7 @@ def pilot_defaults(db: Session, study_key: str) -> PilotDefaults:
         most_participants=most_participants(protocol),
         assumptions=shipped,
         assumptions_trouble=trouble,
+        example=example_assumptions(protocol, _instruments(db, version)),
     )
 
 

@@ -4,7 +4,7 @@ import { ApiError, type Problem } from "@shared/api/request";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation } from "@tanstack/react-query";
-import { type JSX, type ReactNode, useRef, useState } from "react";
+import { type JSX, type ReactNode, type RefObject, useRef, useState } from "react";
 import { Link } from "wouter";
 import { replaceText, showLine, YamlField, type YamlText } from "../editor/YamlField";
 import { Failure } from "../errors";
@@ -31,6 +31,8 @@ const isWithin = (value: number | string, [low, high]: readonly [number, number]
 
 export function PilotOrder({ studyKey, defaults, onStarted }: PilotOrderProps): JSX.Element {
   const [assumed, setAssumed] = useState(defaults.assumptions ?? "");
+  const [isOpen, setOpen] = useState(false);
+  const field = useRef<YamlText | null>(null);
   const start = useMutation({
     mutationFn: (order: NewPilot) => pilots.start(studyKey, order),
     onSuccess: onStarted,
@@ -38,13 +40,26 @@ export function PilotOrder({ studyKey, defaults, onStarted }: PilotOrderProps): 
   const assumptions = assumed.trim() === "" ? null : assumed;
   const problems = problemsOf(start.error);
   const shared = { defaults, assumptions, isPending: start.isPending, onStart: start.mutate };
+  const insert = (text: string) => {
+    setOpen(true);
+    if (field.current !== null) replaceText(field.current.view, text);
+  };
   return (
     <div className={classes.order}>
       <div className={classes.both}>
         <CohortForm {...shared} />
-        <PowerForm {...shared} />
+        <PowerForm {...shared} onExample={insert} onWrite={() => setOpen(true)} />
       </div>
-      <Assumed defaults={defaults} text={assumed} problems={problems} onText={setAssumed} />
+      <Assumed
+        defaults={defaults}
+        text={assumed}
+        problems={problems}
+        field={field}
+        isOpen={isOpen || problems.length > 0}
+        onOpen={setOpen}
+        onText={setAssumed}
+        onExample={insert}
+      />
       {start.isError && problems.length === 0 && <Failure error={start.error} />}
     </div>
   );
@@ -117,7 +132,13 @@ function CohortForm({ defaults, assumptions, isPending, onStart }: FormProps): J
   );
 }
 
-function PowerForm({ defaults, assumptions, isPending, onStart }: FormProps): JSX.Element {
+interface PowerFormProps extends FormProps {
+  readonly onExample: (text: string) => void;
+  readonly onWrite: () => void;
+}
+
+function PowerForm(props: PowerFormProps): JSX.Element {
+  const { defaults, assumptions, isPending, onStart, onExample, onWrite } = props;
   const { t } = useTexts();
   const [text, setText] = useState(defaults.numbers.join(", "));
   const [seed, setSeed] = useState<number | string>(1);
@@ -136,6 +157,11 @@ function PowerForm({ defaults, assumptions, isPending, onStart }: FormProps): JS
     <OrderForm
       title={t("pilot.power")}
       lead={t("pilot.power.lead")}
+      missing={
+        assumptions === null && (
+          <MissingAssumptions example={defaults.example} onExample={onExample} onWrite={onWrite} />
+        )
+      }
       isValid={isValid}
       isPending={isPending}
       onSubmit={() =>
@@ -183,9 +209,35 @@ function PowerForm({ defaults, assumptions, isPending, onStart }: FormProps): JS
   );
 }
 
+interface MissingAssumptionsProps {
+  readonly example: string | null;
+  readonly onExample: (text: string) => void;
+  readonly onWrite: () => void;
+}
+
+/** What is missing for the start, and the way to it. */
+function MissingAssumptions(props: MissingAssumptionsProps): JSX.Element {
+  const { example, onExample, onWrite } = props;
+  const { t } = useTexts();
+  return (
+    <>
+      <span>{t("pilot.assumptions.missing")}</span>
+      <Button
+        size="compact-sm"
+        variant="default"
+        onClick={() => (example === null ? onWrite() : onExample(example))}
+      >
+        {t(example === null ? "pilot.assumptions.write" : "pilot.assumptions.example")}
+      </Button>
+    </>
+  );
+}
+
 interface OrderFormProps {
   readonly title: string;
   readonly lead: string;
+  /** What has to be given before the start, beside its button. */
+  readonly missing?: ReactNode;
   readonly isValid: boolean;
   readonly isPending: boolean;
   readonly onSubmit: () => void;
@@ -193,7 +245,7 @@ interface OrderFormProps {
 }
 
 function OrderForm(props: OrderFormProps): JSX.Element {
-  const { title, lead, isValid, isPending, onSubmit, children } = props;
+  const { title, lead, missing, isValid, isPending, onSubmit, children } = props;
   const { t } = useTexts();
   return (
     <form
@@ -209,15 +261,17 @@ function OrderForm(props: OrderFormProps): JSX.Element {
       </Title>
       <p className={classes.soft}>{lead}</p>
       {children}
-      <Button
-        type="submit"
-        className={classes.start ?? ""}
-        disabled={!isValid}
-        loading={isPending}
-        leftSection={<Icon name="play" size={16} />}
-      >
-        {t("pilot.start")}
-      </Button>
+      <div className={classes.start}>
+        <Button
+          type="submit"
+          disabled={!isValid}
+          loading={isPending}
+          leftSection={<Icon name="play" size={16} />}
+        >
+          {t("pilot.start")}
+        </Button>
+        {missing}
+      </div>
     </form>
   );
 }
@@ -246,15 +300,23 @@ interface AssumedProps {
   readonly defaults: PilotDefaults;
   readonly text: string;
   readonly problems: readonly Problem[];
+  readonly field: RefObject<YamlText | null>;
+  readonly isOpen: boolean;
+  readonly onOpen: (isOpen: boolean) => void;
   readonly onText: (text: string) => void;
+  readonly onExample: (text: string) => void;
 }
 
-function Assumed({ defaults, text, problems, onText }: AssumedProps): JSX.Element {
+function Assumed(props: AssumedProps): JSX.Element {
+  const { defaults, text, problems, field, isOpen, onOpen, onText, onExample } = props;
   const { t } = useTexts();
-  const { assumptions, assumptions_trouble } = defaults;
-  const field = useRef<YamlText | null>(null);
+  const { assumptions, assumptions_trouble, example } = defaults;
   return (
-    <details className={classes.assumed} open={assumptions === null || problems.length > 0}>
+    <details
+      className={classes.assumed}
+      open={isOpen}
+      onToggle={({ currentTarget }) => onOpen(currentTarget.open)}
+    >
       <summary>{t("pilot.assumptions")}</summary>
       {assumptions_trouble !== null && (
         <Notice tone="warn">{t("pilot.assumptions.unfit", { why: assumptions_trouble })}</Notice>
@@ -280,6 +342,16 @@ function Assumed({ defaults, text, problems, onText }: AssumedProps): JSX.Elemen
           onChange={onText}
         />
       </div>
+      {example !== null && text.trim() === "" && (
+        <Button
+          size="compact-sm"
+          variant="default"
+          className={classes.reset ?? ""}
+          onClick={() => onExample(example)}
+        >
+          {t("pilot.assumptions.example")}
+        </Button>
+      )}
       {assumptions !== null && text !== assumptions && (
         <Button
           size="compact-sm"

@@ -29,7 +29,10 @@ export const pilotEn = {
   "pilot.assumptions.hint":
     "Declared numbers, none of them a finding. Change them and see what the answer depends on.",
   "pilot.assumptions.none":
-    "Nothing is assumed yet of how people would answer in this study, so its power cannot be simulated. Write the assumptions here.",
+    "Nothing is assumed yet of how people would answer in this study. Insert the example and replace its numbers, or write your own file.",
+  "pilot.assumptions.missing": "What is assumed of people’s answers is missing.",
+  "pilot.assumptions.example": "Insert an example",
+  "pilot.assumptions.write": "Write it",
   "pilot.assumptions.help": "What each of them means",
   "pilot.assumptions.unfit": "The shipped assumptions do not fit this version: {{why}}",
   "pilot.assumptions.reset": "Reset to the shipped assumptions",
@@ -208,7 +211,10 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.assumptions.hint":
     "Erklärte Zahlen, keine davon ein Befund. Wer sie ändert, sieht, wovon das Ergebnis abhängt.",
   "pilot.assumptions.none":
-    "Wie Menschen in dieser Studie antworten würden, ist noch nicht angenommen, daher lässt sich ihre Teststärke nicht berechnen. Die Annahmen gehören hierher.",
+    "Wie Menschen in dieser Studie antworten würden, ist noch nicht angenommen. Fügen Sie das Beispiel ein und ersetzen Sie seine Zahlen, oder schreiben Sie eine eigene Datei.",
+  "pilot.assumptions.missing": "Es fehlt, was von den Antworten angenommen wird.",
+  "pilot.assumptions.example": "Beispiel einfügen",
+  "pilot.assumptions.write": "Annahmen schreiben",
   "pilot.assumptions.help": "Was jede bedeutet",
   "pilot.assumptions.unfit": "Die mitgelieferten Annahmen passen nicht zu dieser Version: {{why}}",
   "pilot.assumptions.reset": "Auf die mitgelieferten Annahmen zurücksetzen",

@@ -9455,6 +9455,7 @@ export interface components {
          *     `numbers`: participants of a power run, around the planned number. `most_participants`: places
          *     of a closed ledger; null if it grows. `assumptions`: the file that comes with the product for
          *     this study, null if there is none; `assumptions_trouble`: why that one does not fit the version.
+         *     `example`: a file made for the study, whose numbers are to be replaced; null if there is none.
          */
         readonly PilotDefaults: {
             /** Assumptions */
@@ -9466,6 +9467,8 @@ export interface components {
              * @enum {string}
              */
             readonly avatar: "physics" | "physics_without_fingers" | "delayed_copy";
+            /** Example */
+            readonly example: string | null;
             /** Most Participants */
             readonly most_participants: number | null;
             /** Numbers */

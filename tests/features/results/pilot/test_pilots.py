@@ -207,6 +207,7 @@ def test_what_cannot_be_simulated_is_refused(study: Lab) -> None:
     assert refused["details"]
     defaults = ok(study.operator.get(f"/api/studies/{KEY}/pilot-defaults"))
     assert (defaults["assumptions"], defaults["numbers"]) == (None, [6, 9, 12])
+    assert f"study: {KEY}" in defaults["example"]
     unfit = power | {"participants": [6]}
     error(study.operator.post(PATH, json=unfit), 422, "invalid_config")
 
