@@ -322,7 +322,7 @@ function Assumed(props: AssumedProps): JSX.Element {
         <Notice tone="warn">{t("pilot.assumptions.unfit", { why: assumptions_trouble })}</Notice>
       )}
       <p className={classes.soft}>
-        {t(assumptions === null ? "pilot.assumptions.none" : "pilot.assumptions.hint")}{" "}
+        {t(text.trim() === "" ? "pilot.assumptions.none" : "pilot.assumptions.hint")}{" "}
         <Link href={helpAddress("pilot", "what-it-assumes")} className={classes.link ?? ""}>
           {t("pilot.assumptions.help")}
         </Link>

@@ -102,7 +102,7 @@ export const pilotEn = {
   "pilot.kind.never_significant": "Never significant",
   "pilot.phases": "What they did",
   "pilot.phases.note":
-    "Means over people. A task starts again until the time is up, so there is no ceiling; “none” is the floor: the share who complete no task.",
+    "Means over people. A task starts again until the time is up, so there is no ceiling; “none” is the floor: the share who complete no task. In brackets: Student’s t interval of 95 %.",
   "pilot.phases.latency": "Completions by latency (n = {{people}} simulated people)",
   "pilot.phases.drawn":
     "Lines: mean completions as a share of those at the lowest added latency, which counts as exact, with Student’s t interval of 95 % of each mean. Diamonds: the performance of ten people in another task, by latency from end to end (Waltemate et al. 2016). The two have different axes of latency and different tasks, so compare their shape at most.",
@@ -116,7 +116,7 @@ export const pilotEn = {
   "pilot.col.latency": "Added latency (ms)",
   "pilot.col.people": "People",
   "pilot.col.tasks": "Tasks (SD)",
-  "pilot.col.share": "Of lowest (%) [95 %]",
+  "pilot.col.share": "Of lowest (%)",
   "pilot.col.sides": "Sides touched",
   "pilot.col.red": "Red (s)",
   "pilot.col.early": "Early touches",
@@ -284,7 +284,7 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.kind.never_significant": "Nie signifikant",
   "pilot.phases": "Was sie gemacht haben",
   "pilot.phases.note":
-    "Mittelwerte über Personen. Eine Aufgabe beginnt von vorn, bis die Zeit um ist, eine Decke gibt es daher nicht; „keine“ ist der Boden: der Anteil, der keine Aufgabe schafft.",
+    "Mittelwerte über Personen. Eine Aufgabe beginnt von vorn, bis die Zeit um ist, eine Decke gibt es daher nicht; „keine“ ist der Boden: der Anteil, der keine Aufgabe schafft. In Klammern: t-Intervall von 95 %.",
   "pilot.phases.latency":
     "Geschaffte Aufgaben nach Verzögerung (n = {{people}} simulierte Menschen)",
   "pilot.phases.drawn":
@@ -299,7 +299,7 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.col.latency": "Zusätzliche Verzögerung (ms)",
   "pilot.col.people": "Personen",
   "pilot.col.tasks": "Aufgaben (SD)",
-  "pilot.col.share": "Von der kürzesten (%) [95 %]",
+  "pilot.col.share": "Von der kürzesten (%)",
   "pilot.col.sides": "Berührte Seiten",
   "pilot.col.red": "Rot (s)",
   "pilot.col.early": "Zu frühe Berührungen",
