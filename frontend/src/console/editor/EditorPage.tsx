@@ -8,9 +8,11 @@ import { studies } from "@shared/api/endpoints";
 import type { StudyDetail } from "@shared/api/types";
 import { dateTime } from "@shared/format";
 import { inLanguage } from "@shared/text";
+import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useRef, useState } from "react";
+import { Link } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { templatesQuery } from "../queries";
@@ -19,6 +21,7 @@ import { useTitle } from "../ui/page";
 import { Editor } from "./Editor";
 import { dropDraft, GIVEN_START, keptDraft, NEW_STUDY, storedDraft } from "./keptDraft";
 import { NewDraft } from "./NewDraft";
+import classes from "./NewStudy.module.css";
 
 export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.Element {
   const { t, language } = useTexts();
@@ -72,16 +75,21 @@ export function NewStudyEditor({ from, name = "" }: NewStudyEditorProps): JSX.El
     queryKey: ["studies", name, "to-copy"],
     queryFn: async () => {
       const study = await studies.get(name);
-      return drafts.edit(study.yaml ?? "", [
+      const copy = await drafts.edit(study.yaml ?? "", [
         { path: ["key"], action: "set", value: `${study.key}-copy` },
       ]);
+      return { ...copy, title: study.title };
     },
     enabled: from === "study",
     gcTime: 0,
     staleTime: Number.POSITIVE_INFINITY,
   });
   if (from === "study") {
-    return <Loaded query={source}>{({ yaml }) => <NewStudyFrom text={yaml} name={name} />}</Loaded>;
+    return (
+      <Loaded query={source}>
+        {({ yaml, title }) => <NewStudyFrom text={yaml} name={title} />}
+      </Loaded>
+    );
   }
   if (from === "template") {
     return (
@@ -118,10 +126,14 @@ function NewStudyFrom({ text, name }: NewStudyFromProps): JSX.Element {
   const [kept, setKept] = useState(() => keptDraft(NEW_STUDY));
   if (kept === null || kept.text === text) return <NewStudy begin={text} initial={text} />;
   return (
-    <>
-      <Title order={1}>{t("new.title")}</Title>
+    <div className={classes.choice}>
+      <Link href="/new" className={classes.crumbs ?? ""}>
+        <Icon name="back" size={16} />
+        {t("new.title")}
+      </Link>
+      <Title order={1}>{name}</Title>
       <NewDraft kept={kept} instead={name} onDiscarded={() => setKept(null)} />
-    </>
+    </div>
   );
 }
 
