@@ -21,6 +21,7 @@ import {
 } from "./account";
 import { Failure } from "./errors";
 import { Frame } from "./frame/Frame";
+import { useOwnLocation } from "./frame/ownSearch";
 import { useHelpKey } from "./help/useHelpKey";
 import { useTexts } from "./i18n";
 import { useAccountChanged } from "./otherTabs";
@@ -94,7 +95,7 @@ function Shell({ account }: { readonly account: Account }): JSX.Element {
   useSignInChecks();
   useHelpKey();
   return (
-    <Router hook={useHashLocation}>
+    <Router hook={useOwnLocation}>
       <button type="button" className={classes.skip} onClick={focusMain}>
         {t("app.skip")}
       </button>

@@ -10,7 +10,7 @@ import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { useQueryClient } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef, useState } from "react";
-import { useHashLocation } from "wouter/use-hash-location";
+import { useLocation } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Tour.module.css";
@@ -21,7 +21,7 @@ const isOn = ({ state }: Tryout): boolean => state === "starting" || state === "
 
 export function TryoutBar(): JSX.Element | null {
   const tryout = useTryout(true);
-  const [address, navigate] = useHashLocation();
+  const [address, navigate] = useLocation();
   const [dismissed, dismiss] = useState<string | null>(null);
   const queries = useQueryClient();
   const sawStart = useRef(false);

@@ -3,6 +3,7 @@ import { DEMO_KEY } from "@shared/api/housekeeping";
 import type { DataKind } from "@shared/api/types";
 import { useEffect } from "react";
 import { useLocation, useSearch } from "wouter";
+import { useKeptSearch } from "../frame/ownSearch";
 
 const KINDS: readonly string[] = ["people", "simulated", "test"] satisfies readonly DataKind[];
 
@@ -32,23 +33,10 @@ export function useRememberedKind(studyKey: string, kind: DataKind): void {
 export function useKind(studyKey: string): readonly [DataKind, (kind: DataKind) => void] {
   const [place, navigate] = useLocation();
   const kind = kindOf(studyKey, useSearch());
-  useOwnSearch();
   useRememberedKind(studyKey, kind);
   // Replace the address: going back leaves the page instead of undoing a choice.
   return [kind, (next) => navigate(`${place}?kind=${next}`, { replace: true })];
 }
 
-/**
- * Remove the page's search from the address when the page is left.
- *
- * It stands before the `#` of the page's route, so the next page would inherit it.
- */
-export function useOwnSearch(): void {
-  useEffect(() => {
-    const own = window.location.hash;
-    return () => {
-      const { hash, pathname, search: left } = window.location;
-      if (hash !== own && left !== "") history.replaceState(null, "", pathname + hash);
-    };
-  }, []);
-}
+/** Keep what else the page's address chooses, for when it is opened again in this tab. */
+export const useOwnSearch = (): void => useKeptSearch(["kind"]);

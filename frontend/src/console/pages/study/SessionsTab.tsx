@@ -7,6 +7,7 @@ import { seconds } from "@shared/units";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link, useLocation, useSearch } from "wouter";
+import { useKeptSearch } from "../../frame/ownSearch";
 import { useTexts } from "../../i18n";
 import { usePermissions } from "../../permissions";
 import { sessionsQuery } from "../../queries";
@@ -14,7 +15,6 @@ import { stepName } from "../../steps";
 import { ActOnScreen } from "../../tour/ActOnScreen";
 import { TryIt } from "../../tour/TryIt";
 import { KindBadge, STATUSES, StatusBadge } from "../../ui/badges";
-import { useOwnSearch } from "../../ui/chosenKind";
 import { EmptyState } from "../../ui/EmptyState";
 import { KINDS } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
@@ -123,7 +123,8 @@ const isChosen =
 function useChoice(): { readonly chosen: Choice; choose: (part: Partial<Choice>) => void } {
   const [place, navigate] = useLocation();
   const search = new URLSearchParams(useSearch());
-  useOwnSearch();
+  // All of it, as this list has kinds that the other pages of a study do not have.
+  useKeptSearch([]);
   const chosen: Choice = {
     kind: KINDS.find((kind) => kind === search.get("kind")) ?? "all",
     status: STATUSES.find((status) => status === search.get("status")) ?? null,

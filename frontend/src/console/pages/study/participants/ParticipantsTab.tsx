@@ -1,5 +1,6 @@
 /** The study's participants, and their rights: a copy, a correction, and erasure. */
 import { Modal, TextInput } from "@mantine/core";
+import { useSessionStorage } from "@mantine/hooks";
 import type { Participant } from "@shared/api/rights";
 import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
@@ -22,7 +23,11 @@ interface Answering {
 
 export function ParticipantsTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const [search, setSearch] = useState("");
+  const [search, setSearch] = useSessionStorage({
+    key: `reembody.participants.${study.key}`,
+    defaultValue: "",
+    getInitialValueInEffect: false,
+  });
   const [erasing, setErasing] = useState<Participant | null>(null);
   const [erased, setErased] = useState<Participant | null>(null);
   const [answering, setAnswering] = useState<Answering | null>(null);
