@@ -5,7 +5,7 @@ import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { Mark } from "@shared/ui/Mark";
 import { useQuery } from "@tanstack/react-query";
-import type { JSX, ReactNode } from "react";
+import { type JSX, type ReactNode, useEffect, useRef } from "react";
 import { Link, useLocation } from "wouter";
 import { DownloadsButton } from "../downloads/DownloadsButton";
 import { useTexts } from "../i18n";
@@ -41,6 +41,12 @@ export function Sidebar({ account, named, onSearch, onToggle }: SidebarProps): J
   const { t } = useTexts();
   const [address] = useLocation();
   const study = useCurrentStudy(address);
+  const places = useRef<HTMLDivElement>(null);
+  // In a low window the current page's place may be out of sight.
+  // biome-ignore lint/correctness/useExhaustiveDependencies: looks again whenever the address changes
+  useEffect(() => {
+    places.current?.querySelector("[aria-current=page]")?.scrollIntoView({ block: "nearest" });
+  }, [address, named]);
   return (
     <nav className={classes.sidebar} aria-label={t("frame.label")}>
       <div className={classes.head}>
@@ -71,7 +77,7 @@ export function Sidebar({ account, named, onSearch, onToggle }: SidebarProps): J
           )}
         </button>
       </Labelled>
-      <div className={classes.places}>
+      <div ref={places} className={classes.places}>
         <Place href="/" icon="home" name={t("app.studies")} here={address === "/"} named={named} />
         <StudyChoice study={study} named={named} />
         {GROUPS.map((group) => (
