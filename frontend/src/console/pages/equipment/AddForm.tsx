@@ -5,6 +5,7 @@ import {
   Group,
   NumberInput,
   Stack,
+  Text,
   Textarea,
   TextInput,
 } from "@mantine/core";
@@ -51,6 +52,15 @@ export function AddForm({ existing, onClose }: AddFormProps): JSX.Element {
   const complete =
     [equipment, method, date].every((text) => text.trim() !== "") &&
     [delay, sd, samples].every((value) => typeof value === "number");
+  // The unit stands beside the field, so that it is there before anything is typed.
+  const inMs = {
+    rightSection: (
+      <Text size="sm" c="dimmed">
+        ms
+      </Text>
+    ),
+    rightSectionPointerEvents: "none",
+  } as const;
   const figure = { min: 0, hideControls: true, decimalScale: 3 } as const;
   return (
     <form
@@ -69,11 +79,11 @@ export function AddForm({ existing, onClose }: AddFormProps): JSX.Element {
           value={equipment}
           onChange={setEquipment}
         />
-        <Group grow align="start">
+        <Group grow align="end">
           <NumberInput
             {...figure}
             label={t("equipment.delay")}
-            suffix=" ms"
+            {...inMs}
             max={10_000}
             value={delay}
             onChange={setDelay}
@@ -81,7 +91,7 @@ export function AddForm({ existing, onClose }: AddFormProps): JSX.Element {
           <NumberInput
             {...figure}
             label={t("equipment.sd")}
-            suffix=" ms"
+            {...inMs}
             max={10_000}
             value={sd}
             onChange={setSd}
