@@ -100,7 +100,9 @@ function DemoStep({ demo }: { readonly demo: Demo }): JSX.Element {
   return (
     <section className={classes.step} aria-label={t("demo.label")}>
       <div className={classes.demo}>
-        <strong>{t("demo.title")}</strong>
+        <Title order={3} className={classes.stepTitle ?? ""}>
+          {t("demo.title")}
+        </Title>
         <DemoStatus demo={demo} all={t("demo.all", { planned: demo.people })} />
         <DemoProgress demo={demo} />
         <span className={classes.demoButtons}>
@@ -108,7 +110,12 @@ function DemoStep({ demo }: { readonly demo: Demo }): JSX.Element {
           <RemoveDemo />
         </span>
       </div>
-      <Button component={Link} href={FIGURES} leftSection={<Icon name="chart" size={18} />}>
+      <Button
+        component={Link}
+        href={FIGURES}
+        classNames={WRAPPED}
+        leftSection={<Icon name="chart" size={18} />}
+      >
         {t("demo.results")}
       </Button>
     </section>
@@ -137,6 +144,9 @@ export function DemoLine(): JSX.Element | null {
   );
 }
 
+/** In a narrow card the words of a button take two lines. */
+const WRAPPED = { root: classes.button ?? "", label: classes.buttonLabel ?? "" };
+
 interface StepProps {
   readonly step: "home.demo" | "home.watch" | "home.act" | "home.create";
   readonly icon: IconName;
@@ -157,7 +167,10 @@ function Step(props: StepProps): JSX.Element | null {
   if (!can(permission)) return null;
   const body: Key = `${step}.body`;
   return (
-    <div className={classes.step}>
+    <section className={classes.step} aria-labelledby={`${step}.title`}>
+      <Title order={3} id={`${step}.title`} className={classes.stepTitle ?? ""}>
+        {t(`${step}.title`)}
+      </Title>
       <p>{t(body)}</p>
       {study != null && (
         <span className={classes.stepStudy}>
@@ -169,11 +182,12 @@ function Step(props: StepProps): JSX.Element | null {
         variant={isFirst ? "filled" : "light"}
         loading={isBusy}
         disabled={onChoose === undefined}
+        classNames={WRAPPED}
         leftSection={<Icon name={icon} size={18} />}
         onClick={onChoose}
       >
         {t(step)}
       </Button>
-    </div>
+    </section>
   );
 }

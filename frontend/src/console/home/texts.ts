@@ -4,15 +4,19 @@ export const homeEn = {
   "home.first.lead.nobody": "Nobody has taken part yet. Nothing you do here can harm later data.",
   "home.first.lead.others":
     "No participant has taken part yet. Simulated and test sessions never mix with participants' data.",
+  "home.demo.title": "A filled lab",
   "home.demo": "Load the demo lab",
   "home.demo.body":
     "Twelve simulated people visit a study in 10-second phases. The page shows how far they are; how long it takes depends on the computer. You remove all of it with one click.",
+  "home.watch.title": "The operator's desk",
   "home.watch": "Watch a session live",
   "home.watch.body":
     "A scripted participant goes through a whole session at four times normal speed. You sit at the operator's desk.",
+  "home.act.title": "The participant's place",
   "home.act": "Try it as a participant",
   "home.act.body":
     "Take the participant's place with mouse and keyboard. No headset needed; a new tab opens.",
+  "home.create.title": "A study of your own",
   "home.create": "Create a study",
   "home.create.body":
     "From a template or a file of your own. Every problem is shown with its line while you write.",
@@ -60,15 +64,19 @@ export const homeDe: Readonly<Record<keyof typeof homeEn, string>> = {
     "Noch hat niemand teilgenommen. Nichts, was Sie hier tun, kann späteren Daten schaden.",
   "home.first.lead.others":
     "Noch hat kein Mensch teilgenommen. Simulierte Sitzungen und Tests bleiben von den Daten der Teilnehmenden getrennt.",
+  "home.demo.title": "Ein gefülltes Labor",
   "home.demo": "Demo-Labor laden",
   "home.demo.body":
     "Zwölf simulierte Personen besuchen eine Studie in Phasen von 10 Sekunden. Die Seite zeigt, wie weit sie sind; wie lange es dauert, hängt vom Rechner ab. Ein Klick entfernt alles wieder.",
+  "home.watch.title": "Platz der Versuchsleitung",
   "home.watch": "Eine Sitzung live ansehen",
   "home.watch.body":
     "Eine simulierte Person geht in vierfachem Tempo durch eine ganze Sitzung. Sie sitzen am Platz der Versuchsleitung.",
+  "home.act.title": "Platz der Teilnehmenden",
   "home.act": "Selbst ausprobieren",
   "home.act.body":
     "Mit Maus und Tastatur an der Stelle der teilnehmenden Person, ohne Headset; ein neuer Tab öffnet sich.",
+  "home.create.title": "Eigene Studie",
   "home.create": "Eine Studie anlegen",
   "home.create.body":
     "Aus einer Vorlage oder einer eigenen Datei. Jedes Problem wird beim Schreiben mit seiner Zeile gezeigt.",
