@@ -45,7 +45,7 @@ export function PhaseTable({ session }: { readonly session: SessionView }): JSX.
         </Button>
       </div>
       <ScrollBox label={t("recorded.title")}>
-        <table className={`${classes.table} numbers`}>
+        <table className={`${classes.table} ${classes.recorded} numbers`}>
           <thead>
             <tr>
               {[...COLUMNS, ...(hasBoxes ? AT_BOXES : [])].map((column) => (
