@@ -6,7 +6,7 @@ import { type JSX, useState } from "react";
 import { signIn } from "../account";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useSingleSubmit } from "../ui/useSingleSubmit";
+import { useFormSubmit } from "../ui/useSingleSubmit";
 import { SignedOutFrame } from "./SignedOutFrame";
 
 /** The sign-in page; `ended` is the account whose sign-in has expired. */
@@ -35,14 +35,9 @@ function LoginForm({ username: expiredName }: { readonly username: string }): JS
   const [username, setUsername] = useState(expiredName);
   const [password, setPassword] = useState("");
   const login = useMutation({ mutationFn: () => signIn(queries, username.trim(), password) });
-  const submit = useSingleSubmit(login);
+  const submit = useFormSubmit(login);
   return (
-    <form
-      onSubmit={(event) => {
-        event.preventDefault();
-        submit();
-      }}
-    >
+    <form onSubmit={submit}>
       <Stack>
         <TextInput
           label={t("login.username")}

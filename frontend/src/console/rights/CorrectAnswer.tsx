@@ -6,7 +6,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useSingleSubmit } from "../ui/useSingleSubmit";
+import { useFormSubmit } from "../ui/useSingleSubmit";
 import { AnswerField } from "./AnswerField";
 import classes from "./Rights.module.css";
 
@@ -35,16 +35,10 @@ export function CorrectAnswer({ sessionId, form, item, onDone }: CorrectAnswerPr
       onDone();
     },
   });
-  const submit = useSingleSubmit(correct);
+  const submit = useFormSubmit(correct);
   const same = Number(value) === before || value === before;
   return (
-    <form
-      className={classes.correct}
-      onSubmit={(event) => {
-        event.preventDefault();
-        submit();
-      }}
-    >
+    <form className={classes.correct} onSubmit={submit}>
       <AnswerField form={form} item={item} value={value} onChange={setValue} />
       <Textarea
         label={t("answers.why")}

@@ -1,6 +1,6 @@
 /** Forms that are sent once, however often and fast somebody clicks on their button. */
 import type { UseMutationResult } from "@tanstack/react-query";
-import { useState } from "react";
+import { type FormEvent, useState } from "react";
 
 type Send<Variables> = (variables: Variables) => Promise<unknown>;
 
@@ -33,4 +33,16 @@ export function useSingleSubmit<Variables>(
 ): (variables: Variables) => void {
   const [once] = useState(() => singly<Variables>(options));
   return (variables) => once(mutation.mutateAsync, variables);
+}
+
+/** Return the handler of a form that needs no variables: it is sent once, and no page is loaded. */
+export function useFormSubmit(
+  mutation: Pick<UseMutationResult<unknown, Error, void>, "mutateAsync">,
+  options?: Options,
+): (event: FormEvent) => void {
+  const submit = useSingleSubmit(mutation, options);
+  return (event) => {
+    event.preventDefault();
+    submit();
+  };
 }

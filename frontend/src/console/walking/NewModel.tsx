@@ -5,7 +5,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useSingleSubmit } from "../ui/useSingleSubmit";
+import { useFormSubmit } from "../ui/useSingleSubmit";
 import { NameField, SceneField, WholeNumbers } from "./FormFields";
 import { modelsQuery } from "./queries";
 
@@ -63,14 +63,9 @@ function Form({
       onDone();
     },
   });
-  const submit = useSingleSubmit(order);
+  const submit = useFormSubmit(order);
   return (
-    <form
-      onSubmit={(event) => {
-        event.preventDefault();
-        submit();
-      }}
-    >
+    <form onSubmit={submit}>
       <Stack>
         <Select
           label={t("walking.sets.one")}

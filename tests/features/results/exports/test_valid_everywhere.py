@@ -103,7 +103,7 @@ def test_an_export_of_a_study_without_validity_rules_is_unchanged(
         (row["table"], row["column"]): row["meaning"] for row in rows_of(tree["codebook.csv"])
     }
     assert meanings["sessions", "valid"].startswith(
-        "False if the session was aborted or withdrawn, or if its headset said"
+        "False if the session was aborted or withdrawn, if its data were erased, or if its"
     )
     assert ("sessions", "reasons_not_valid") not in meanings
     assert "neither aborted nor withdrawn" in meanings["phases", "valid"]

@@ -4,7 +4,7 @@ import { useMutation } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { useSingleSubmit } from "../../ui/useSingleSubmit";
+import { useFormSubmit } from "../../ui/useSingleSubmit";
 import { axesOf } from "../axes";
 import classes from "../Editor.module.css";
 import { ScopeSelect, targetsOf } from "../GroupSelect";
@@ -56,16 +56,9 @@ export function TuningOrder(props: TuningOrderProps): JSX.Element {
       ),
     onSuccess: onStarted,
   });
-  const submit = useSingleSubmit(start, { isReused: true });
+  const submit = useFormSubmit(start, { isReused: true });
   return (
-    <form
-      className={classes.panel}
-      aria-label={t("avatars.tuning.order")}
-      onSubmit={(event) => {
-        event.preventDefault();
-        submit();
-      }}
-    >
+    <form className={classes.panel} aria-label={t("avatars.tuning.order")} onSubmit={submit}>
       <p className={classes.soft}>{t("avatars.tuning.lead")}</p>
       <div className={classes.row}>
         <ScopeSelect

@@ -20,7 +20,7 @@ import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { invitationsQuery } from "../../queries";
 import { RoleBadge } from "../../ui/badges";
-import { useSingleSubmit } from "../../ui/useSingleSubmit";
+import { useFormSubmit } from "../../ui/useSingleSubmit";
 import { lanCommand } from "../network/lanCommand";
 import { RoleChoice, StudiesChoice } from "./RoleAndStudies";
 
@@ -68,14 +68,9 @@ function InviteForm({ onMade }: { readonly onMade: (made: Invited) => void }): J
       onMade(created);
     },
   });
-  const submit = useSingleSubmit(make);
+  const submit = useFormSubmit(make);
   return (
-    <form
-      onSubmit={(event) => {
-        event.preventDefault();
-        submit();
-      }}
-    >
+    <form onSubmit={submit}>
       <Stack>
         <RoleChoice role={role} onChange={setRole} />
         <StudiesChoice studies={studies} onChange={setStudies} />

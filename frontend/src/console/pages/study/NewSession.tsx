@@ -19,7 +19,7 @@ import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { sessionQuery } from "../../queries";
 import { KINDS } from "../../ui/KindFilter";
-import { useSingleSubmit } from "../../ui/useSingleSubmit";
+import { useFormSubmit } from "../../ui/useSingleSubmit";
 
 /** The server's limit; a longer code is rejected with a message instead of being cut. */
 const LONGEST_CODE = 40;
@@ -83,14 +83,9 @@ function JoinForm({ study, firstKind, onClose }: JoinFormProps): JSX.Element {
       navigate(`/sessions/${session.id}`);
     },
   });
-  const submit = useSingleSubmit(join);
+  const submit = useFormSubmit(join);
   return (
-    <form
-      onSubmit={(event) => {
-        event.preventDefault();
-        submit();
-      }}
-    >
+    <form onSubmit={submit}>
       <Stack>
         <TextInput
           label={t("join.code")}

@@ -16,7 +16,7 @@ import { usePermissions } from "../../permissions";
 import { versionDiffQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import { ScrollBox } from "../../ui/tables";
-import { useSingleSubmit } from "../../ui/useSingleSubmit";
+import { useFormSubmit } from "../../ui/useSingleSubmit";
 import page from "./StudyPage.module.css";
 import classes from "./VersionsTab.module.css";
 
@@ -117,7 +117,7 @@ function Duplicate({ study }: { readonly study: StudyDetail }): JSX.Element {
       navigate(`/studies/${created.key}/edit`);
     },
   });
-  const submit = useSingleSubmit(copy, { isReused: true });
+  const submit = useFormSubmit(copy, { isReused: true });
   const close = () => {
     copy.reset();
     setOpened(false);
@@ -133,12 +133,7 @@ function Duplicate({ study }: { readonly study: StudyDetail }): JSX.Element {
         title={t("versions.duplicate")}
         closeButtonProps={{ "aria-label": t("action.close") }}
       >
-        <form
-          onSubmit={(event) => {
-            event.preventDefault();
-            submit();
-          }}
-        >
+        <form onSubmit={submit}>
           <Stack>
             <TextInput
               data-autofocus
