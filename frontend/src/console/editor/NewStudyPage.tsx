@@ -106,13 +106,13 @@ function StartOption({ icon, title, lead, children }: StartOptionProps): JSX.Ele
 }
 
 function FromStudy({ studies }: StudiesProps): JSX.Element {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   return (
     <StartOption icon="add" title={t("new.copy")} lead={t("new.copy.lead")}>
       <ul className={classes.list}>
         {studies.map((study) => (
           <li key={study.key}>
-            <Link href={`/new/study/${study.key}`}>{study.title}</Link>
+            <Link href={`/new/study/${study.key}`}>{inLanguage(study.titles, language)}</Link>
           </li>
         ))}
       </ul>
