@@ -3,7 +3,7 @@
 import re
 from datetime import datetime
 
-from sqlalchemy import select
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput
@@ -19,7 +19,7 @@ def find_or_add_participant(
     """Return the participant with this code, or add one; without a code, use the next free one.
 
     Raises InvalidInput for an invalid code, and Conflict if that participant is in a session or has
-    completed one.
+    completed one, or if only the case of letters tells the code from that of somebody else.
     """
     if code is None or not code.strip():
         return _add_participant(db, study_id, kind, _next_code(db, study_id, kind), now)
@@ -37,6 +37,7 @@ def find_or_add_participant(
         )
     )
     if existing is None:
+        _require_unlike(db, study_id, kind, code)
         return _add_participant(db, study_id, kind, code, now)
     if db.scalar(select(Erasure.id).where(Erasure.participant_id == existing.id)) is not None:
         raise Conflict(
@@ -58,6 +59,24 @@ def find_or_add_participant(
             details=[{"session_id": busy.id, "status": busy.status}],
         )
     return existing
+
+
+def _require_unlike(db: Session, study_id: str, kind: str, code: str) -> None:
+    """Raise Conflict if another code of the study differs in upper and lower case only."""
+    alike = db.scalar(
+        select(Participant.code).where(
+            Participant.study_id == study_id,
+            Participant.kind == kind,
+            func.lower(Participant.code) == code.lower(),
+        )
+    )
+    if alike is not None:
+        raise Conflict(
+            f"{code} differs from the participant {alike} in upper and lower case only",
+            value=code,
+            valid=alike,
+            remedy=f"Write {alike} for the same person, or use another code for somebody else.",
+        )
 
 
 def is_code(code: str) -> bool:

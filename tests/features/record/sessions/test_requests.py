@@ -46,5 +46,13 @@ def test_a_repeated_request_for_another_session_is_refused(lab: Lab) -> None:
     assert _ids(lab) == made
 
 
+def test_a_code_that_differs_in_case_alone_is_refused(lab: Lab) -> None:
+    """p-0007 is no second person beside P-0007, but another kind of session may use the code."""
+    lab.join(participant_code="Case-7")
+    refusal = error(lab.try_join(participant_code="case-7"), 409, "conflict")
+    assert (refusal["value"], refusal["valid"]) == ("case-7", "Case-7")
+    assert ok(lab.try_join(participant_code="case-7", kind="test"))["participant_code"] == "case-7"
+
+
 def _ids(lab: Lab) -> set[str]:
     return {one["id"] for one in ok(lab.operator.get(f"/api/studies/{STUDY}/sessions"))}
