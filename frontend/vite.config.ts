@@ -6,6 +6,7 @@ import { defineConfig, type Plugin, type ProxyOptions } from "vite";
 import { brotli } from "./brotli.ts";
 import { helpPages } from "./helpPages.ts";
 import { textTables } from "./textTables.ts";
+import { usedStyles } from "./usedStyles.ts";
 
 export const source = resolve(import.meta.dirname, "src");
 /** The help pages are made from Markdown and pictures outside of `frontend`. */
@@ -81,6 +82,7 @@ export default defineConfig({
     servePagesLikeTheServer(),
     helpPages(repository),
     textTables(source, alias),
+    usedStyles(resolve(source, "shared/theme/mantine.css")),
     brotli(),
   ],
   resolve: { alias },
