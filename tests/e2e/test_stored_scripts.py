@@ -26,6 +26,8 @@ SCRIPTS = (
     "[click](javascript:window.ran=(window.ran||0)+1) {{window.ran=1}}",
 )
 EVIL = " ".join(SCRIPTS)
+# A title has at most 200 characters; the description has the others.
+TITLE = " ".join(SCRIPTS[:3])
 TABS = (
     *("", "overview", "ledger", "sessions", "participants", "dashboard", "export", "protocol"),
     *("suggestions", "versions"),
@@ -38,7 +40,8 @@ def hostile_study() -> str:
     text = EVIL.replace("'", "''")
     return edited(
         ("key: reembodiment-latency", f"key: {HOSTILE}"),
-        ("en: Acting through another body", f"en: '{text}'"),
+        ("en: Acting through another body", f"en: '{TITLE}'"),
+        ("description:\n  en: >-", f"description:\n  en: >-\n    {text}"),
         ("{en: no added latency,", f"{{en: '{text}',"),
     )
 

@@ -25,9 +25,9 @@ router = APIRouter(prefix="/studies/{key}", tags=["pilots"])
 
 
 @router.get("/pilot-defaults")
-def get_pilot_defaults(key: str, db: Reading, _: SignedIn) -> PilotDefaults:
+def get_pilot_defaults(key: str, db: Reading, caller: SignedIn) -> PilotDefaults:
     """Return what a pilot of the study's newest version starts with."""
-    return pilot_defaults(db, key)
+    return pilot_defaults(db, key, caller)
 
 
 @router.get("/pilots")

@@ -36,7 +36,7 @@ from app.features.results.pilot.schemas import (
     State,
 )
 from app.models import PilotRow, StudyVersion, new_id
-from app.platform.access import Caller
+from app.platform.access import Caller, is_blind
 from app.platform.config_problems import invalid_config
 from app.platform.context import AppContext
 from app.protocol import (
@@ -62,8 +62,11 @@ PILOTS: Final = JobKind(
 _PARTICIPANTS: Final = 12
 
 
-def pilot_defaults(db: Session, study_key: str) -> PilotDefaults:
-    """Return what a pilot of the study's newest version starts with; raise NotFound."""
+def pilot_defaults(db: Session, study_key: str, caller: Caller) -> PilotDefaults:
+    """Return what a pilot of the study's newest version starts with; raise NotFound.
+
+    An example of assumptions names the conditions, which a blinded study shows to nobody here.
+    """
     version = newest_version(db, study_by_key(db, study_key))
     protocol = protocol_of(version)
     shipped, trouble, planned = _shipped_assumptions(study_key), None, _PARTICIPANTS
@@ -84,7 +87,9 @@ def pilot_defaults(db: Session, study_key: str) -> PilotDefaults:
         most_participants=most_participants(protocol),
         assumptions=shipped,
         assumptions_trouble=trouble,
-        example=example_assumptions(protocol, _instruments(db, version)),
+        example=None
+        if is_blind(db, caller, protocol, None)
+        else example_assumptions(protocol, _instruments(db, version)),
     )
 
 
