@@ -9,7 +9,8 @@ import { resolve } from "node:path";
 import type { Plugin } from "vite";
 
 const STYLES = resolve(import.meta.dirname, "node_modules/@mantine/core/styles");
-const COMPONENT = /@mantine\/core\/.*\/components\/(?:.*\/)?(\w+)\/[^/]+$/;
+/** Of a component, or of what several of them share, such as the label beside a checkbox. */
+const COMPONENT = /@mantine\/core\/.*\/(\w+)\/[^/]+$/;
 
 /** @param sheet the stylesheet with an `@import` of each component's style */
 export function usedStyles(sheet: string): Plugin {
