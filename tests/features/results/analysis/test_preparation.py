@@ -80,8 +80,8 @@ def test_a_server_that_starts_prepares_what_it_finds(database: Database) -> None
     with database.writing() as db:
         build_session(db, SessionSpec("P-0001"))
     desk = Desk.of(database)
-    assert desk.look(0.0) == len(IN_ORDER)
-    assert desk.look(SETTLED_S) == 0
+    assert desk.look(0.0) == 0
+    assert desk.look(SETTLED_S) == len(IN_ORDER)
 
 
 @pytest.mark.one_engine
