@@ -41,7 +41,13 @@ from app.protocol.loading import (
 from app.protocol.orders import LedgerRow, imbalances, ledger_block, sequences
 from app.protocol.plan import Step, compile_plan
 from app.protocol.preregistration import ExclusionRule, Preregistration, PrimaryTest
-from app.protocol.primary_names import NO_NAMES, PrimaryNames, primary_names
+from app.protocol.primary_names import (
+    NO_NAMES,
+    PRIMARY_DIRECTIONS,
+    PRIMARY_MEASURES,
+    PrimaryNames,
+    primary_names,
+)
 from app.protocol.procedure import ConsentStep, FormPlace
 from app.protocol.road_scenes import (
     PARTICIPANT,
@@ -90,6 +96,8 @@ __all__ = [
     "OPENING_S",
     "PARTICIPANT",
     "PHASES",
+    "PRIMARY_DIRECTIONS",
+    "PRIMARY_MEASURES",
     "READING_WORDS_PER_S",
     "ROAD_KINDS",
     "STEP_KINDS",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from app.protocol.preregistration import PrimaryTest
 from app.protocol.study import StudyProtocol
 from app.science.instruments import Instrument
+from app.texts import Words
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,16 @@ class PrimaryNames:
     reference: dict[str, str] | None
 
 
+PRIMARY_MEASURES = {
+    "contact_time": Words(en="contact time (s)", de="Kontaktzeit (s)"),
+    "completions": Words(en="completed tasks", de="erledigte Aufgaben"),
+}
+"""The measures of a primary test that are no scores."""
+PRIMARY_DIRECTIONS = {
+    "two_sided": Words(en="two-sided", de="zweiseitig"),
+    "rises": Words(en="it rises", de="es steigt"),
+    "falls": Words(en="it falls", de="es fällt"),
+}
 NO_NAMES = PrimaryNames(None, None, None)
 """Where nothing but the keys is known."""
 

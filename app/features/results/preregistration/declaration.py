@@ -10,6 +10,8 @@ from app.features.design.studies import instrument_for, protocol_of
 from app.features.results.preregistration.schemas import DeclarationView
 from app.models import StudyVersion
 from app.protocol import (
+    PRIMARY_DIRECTIONS,
+    PRIMARY_MEASURES,
     ExclusionRule,
     Preregistration,
     PrimaryNames,
@@ -18,11 +20,6 @@ from app.protocol import (
 )
 from app.science.statistical_tests import statistical_test
 
-MEASURES = {
-    "contact_time": "contact time (s)",
-    "completions": "completed tasks",
-}
-DIRECTIONS = {"two_sided": "two-sided", "rises": "it rises", "falls": "it falls"}
 RULES = {
     "complete_session": "sessions that were not completed",
     "minimum_frame_rate_hz": "a task phase below {limit:g} frames per second",
@@ -92,13 +89,13 @@ def primary_words(primary: PrimaryTest) -> str:
     if primary.measure == "score":
         measure = f"the score {primary.score} of {primary.instrument}"
     else:
-        measure = MEASURES[primary.measure]
+        measure = PRIMARY_MEASURES[primary.measure].en
     limb = {"both": "the mean of both tasks"}.get(primary.limb, f"the {primary.limb} task")
     words = f"{statistical_test(primary.test).phrase} of {measure} in {limb}, by added latency"
     if primary.reference is not None:
         words += f", against {primary.reference}"
     corrected = ", corrected by Holm's rule" if primary.correction == "holm" else ""
-    return f"{words}; {DIRECTIONS[primary.direction]}{corrected}."
+    return f"{words}; {PRIMARY_DIRECTIONS[primary.direction].en}{corrected}."
 
 
 def rule_words(rule: ExclusionRule) -> str:

@@ -6,11 +6,11 @@ from typing import Any, Final
 
 from app.features.results.pilot.simulation.check import Reached
 from app.features.results.pilot.simulation.power import Curve
-from app.protocol import PrimaryNames
+from app.protocol import PRIMARY_DIRECTIONS, PRIMARY_MEASURES, PrimaryNames
 from app.science.pilot import PowerPoint
 from app.science.statistical_tests import statistical_test
 from app.simulated_people.visits import AvatarKind
-from app.texts import LANGUAGES, Words
+from app.texts import LANGUAGES, Words, chosen
 
 Texts = dict[str, str]
 """One text by language."""
@@ -26,19 +26,10 @@ _AVATARS: Final[Mapping[AvatarKind, Words]] = {
         de="verzögerte Kopie des Körpers, die durch Kanten hindurchgeht",
     ),
 }
-_MEASURES: Final = {
-    "contact_time": Words(en="contact time (s)", de="Kontaktzeit (s)"),
-    "completions": Words(en="completed tasks", de="erledigte Aufgaben"),
-}
 _LIMBS: Final = {
     "hand": Words(en="hand task", de="Handaufgabe"),
     "foot": Words(en="foot task", de="Fußaufgabe"),
     "both": Words(en="mean of both tasks", de="Mittel beider Aufgaben"),
-}
-_DIRECTIONS: Final = {
-    "two_sided": Words(en="two-sided", de="zweiseitig"),
-    "rises": Words(en="it rises", de="es steigt"),
-    "falls": Words(en="it falls", de="es fällt"),
 }
 _SCORE: Final = Words(
     en="score “{{score}}” of {{instrument}}", de="Wert „{{score}}“ aus {{instrument}}"
@@ -168,8 +159,8 @@ def reach_sentence(reached: Sequence[Reached], language: str = "en") -> str:
 
 
 def _ethics(one: Rehearsed, language: str) -> str:
-    title = one.title.get(language) or one.title.get("en") or next(iter(one.title.values()))
-    visit = _filled(_VISIT, language, title=title, minutes=_number(one.session_min, 0, language))
+    title, minutes = chosen(one.title, language), _number(one.session_min, 0, language)
+    visit = _filled(_VISIT, language, title=title, minutes=minutes)
     back = _number(one.walk_back_min, 1, language)
     if back != _number(0.0, 1, language):
         visit += _filled(_WALKS_BACK, language, minutes=back)
@@ -212,7 +203,7 @@ def _test_words(test: Mapping[str, Any], names: PrimaryNames, language: str) -> 
             instrument=_named(names.instrument, test["instrument"], language),
         )
         if test["measure"] == "score"
-        else _MEASURES[test["measure"]].in_language(language)
+        else PRIMARY_MEASURES[test["measure"]].in_language(language)
     )
     return _filled(
         _TEST,
@@ -220,7 +211,7 @@ def _test_words(test: Mapping[str, Any], names: PrimaryNames, language: str) -> 
         test=statistical_test(test["test"]).name.in_language(language),
         measure=measure,
         limb=_LIMBS[test["limb"]].in_language(language),
-        direction=_DIRECTIONS[test["direction"]].in_language(language),
+        direction=PRIMARY_DIRECTIONS[test["direction"]].in_language(language),
     )
 
 
@@ -239,7 +230,7 @@ def _point(one: PowerPoint, language: str) -> str:
 
 
 def _named(name: Mapping[str, str] | None, key: str, language: str) -> str:
-    return key if name is None else name.get(language) or name.get("en") or key
+    return key if name is None else chosen(name, language) or key
 
 
 def _filled(words: Words, language: str, **values: object) -> str:
