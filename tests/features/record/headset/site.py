@@ -5,7 +5,6 @@ import uuid
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from http import HTTPStatus
 from typing import Any
 
 import httpx2
@@ -16,7 +15,6 @@ from tests.features.lab import STUDY, Json, ok
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 SUBPROTOCOL = "reembody.v1"
-STALE_AGAIN = 5
 HELLO: Json = {"type": "hello", "protocol": 1, "client": "test"}
 
 
@@ -92,20 +90,14 @@ class Site:
         return view
 
     def command(self, session_id: str, kind: str, **fields: Any) -> Json:
-        """Send a command that must be accepted and return the session after it.
-
-        As a person would, it looks again if a headset's report changed the session meanwhile.
-        """
-        body = {"command_id": str(uuid.uuid4()), "type": kind, **fields}
-        for _ in range(STALE_AGAIN):
-            body["expected_version"] = self.view(session_id)["version"]
-            answer = self.operator.post(f"/api/sessions/{session_id}/commands", json=body)
-            if (
-                answer.status_code != HTTPStatus.CONFLICT
-                or answer.json()["error"]["code"] != "stale"
-            ):
-                break
-        view: Json = ok(answer)
+        """Send a command that must be accepted and return the session after it."""
+        body = {
+            "command_id": str(uuid.uuid4()),
+            "expected_version": self.view(session_id)["version"],
+            "type": kind,
+            **fields,
+        }
+        view: Json = ok(self.operator.post(f"/api/sessions/{session_id}/commands", json=body))
         return view
 
     def skip_to(self, session_id: str, step_key: str) -> None:
