@@ -10,7 +10,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.database import referenced_row
-from app.errors import StaleVersion
+from app.errors import InvalidInput, StaleVersion
 from app.features.design.studies.comparing import compare_versions
 from app.features.design.studies.drafts.endpoints import router as drafts
 from app.features.design.studies.lifecycle import archive, duplicate, restore
@@ -76,10 +76,18 @@ def post_version(
 ) -> StudyView:
     """Add a version to a study, unless one with the same content exists.
 
-    Raises StaleVersion if somebody has saved another one since this one's editing began.
+    Raises StaleVersion if somebody has saved another one since this one's editing began, and
+    InvalidInput if it began with a version that does not exist.
     """
     study = study_by_key(db, key)
     newest = newest_version(db, study)
+    if file.based_on is not None and file.based_on > newest.number:
+        raise InvalidInput(
+            f"the study {key} has no version {file.based_on}",
+            value=file.based_on,
+            valid=f"1 to {newest.number}",
+            remedy="Name the version with which the editing began.",
+        )
     if file.based_on not in (None, newest.number) and newest.source_yaml != file.yaml:
         raise StaleVersion(
             f"version {newest.number} was saved after these changes had begun, from version "

@@ -180,6 +180,8 @@ def test_a_version_that_began_before_another_is_refused_once(fresh_lab: Lab) -> 
     assert "version 2 was saved" in refused["message"]
     late["based_on"] = refused["valid"]
     assert ok(fresh_lab.operator.post(place, json=late))["version"] == 3
+    unknown = {**late, "based_on": 9}
+    assert error(fresh_lab.operator.post(place, json=unknown), 422, "invalid_input")["value"] == 9
     late["based_on"] = 2
     assert ok(fresh_lab.operator.post(place, json=late))["version"] == 3
 
