@@ -225,6 +225,8 @@ def test_a_page_that_a_role_may_not_open_says_so(lab: BlindedLab, page_factory: 
     analyst.get_by_text("Joint per part", exact=True).click()
     expect(analyst.get_by_role("row", name="left knee")).to_be_visible()
     expect(analyst.get_by_role("button", name="Save", exact=True)).to_have_count(0)
+    # What the page still asks for would be refused once it is signed out.
+    expect(analyst.locator("[data-drawn=skin]")).to_be_visible(timeout=PATIENCE_MS)
     # It has no live feed that ends, and asks all the same.
     analyst.context.clear_cookies()
     expect(analyst.get_by_text("You have been signed out")).to_be_visible(timeout=PATIENCE_MS)

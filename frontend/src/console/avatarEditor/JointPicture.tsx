@@ -144,7 +144,7 @@ function Picture(props: PictureProps): JSX.Element {
   };
   const figures = standing?.figures ?? NOBODY;
   return (
-    <div className={classes.picture}>
+    <div className={classes.picture} data-drawn={standing === null ? "nothing" : "skin"}>
       <div className={classes.sides}>
         <CameraSides onLook={(from) => drawing?.showBody(from)} />
         <button
