@@ -52,6 +52,8 @@ class ModelOptions:
         carried_parts: the parts whose weight is carried (`compliance`).
         longest_delay_s: the longest latency that can be set while the model runs; see
             `MjModel.actuator_delay`. With zero there are no delay buffers.
+        step_s: the time step. Walls, limits and welds become softer with a longer one: MuJoCo
+            raises their time constants to two steps.
     """
 
     hips: Literal["carried", "welded"] = "carried"
@@ -61,6 +63,7 @@ class ModelOptions:
     colliding: frozenset[frozenset[str]] = COLLIDING
     delays_s: Mapping[str, float] = field(default_factory=dict)
     carried_parts: frozenset[str] = frozenset()
+    step_s: float = TIMESTEP_S
 
 
 DEFAULT_OPTIONS: Final = ModelOptions()

@@ -46,7 +46,6 @@ from app.science.avatar.configuration import (
     HIPS_TARGET,
     LIMIT_SOLREF,
     SIMPLE,
-    TIMESTEP_S,
     WALL_SOLIMP,
     WALL_SOLREF,
     WELD_SOLIMP,
@@ -186,7 +185,9 @@ class _Model:
         root = Element("mujoco", model="avatar")
         root.add("compiler", angle="radian", autolimits="true")
         gravity = (0.0, -9.81 if self._options.gravity else 0.0, 0.0)
-        option = root.add("option", timestep=TIMESTEP_S, gravity=gravity, integrator="implicitfast")
+        option = root.add(
+            "option", timestep=self._options.step_s, gravity=gravity, integrator="implicitfast"
+        )
         if self._pieces or "none" in self._colliders.kinds.values():
             # When the model is loaded, the tree of the midphase leaves out geoms that do not
             # collide, so those whose collisions are switched on later would never be found.
@@ -292,9 +293,9 @@ class _Model:
         settings = self._settings[axis.name]
         torque = max(settings.max_torque_nm, NO_TORQUE_NM)
         own_delay_s = self._options.delays_s.get(axis.part, 0.0)
-        longest_s = self._options.longest_delay_s
-        own_samples = ceil(own_delay_s / TIMESTEP_S - 1e-9)
-        samples = round(longest_s / TIMESTEP_S) + own_samples + 1
+        longest_s, step_s = self._options.longest_delay_s, self._options.step_s
+        own_samples = ceil(own_delay_s / step_s - 1e-9)
+        samples = round(longest_s / step_s) + own_samples + 1
         has_buffer = longest_s > 0.0 or own_delay_s > 0.0
         actuator.add(
             "pid", name=axis.name, joint=axis.name, input="pos vel", kp=settings.kp, kv=settings.kd,

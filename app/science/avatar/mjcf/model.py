@@ -73,6 +73,7 @@ def avatar_model(
     scene: Scene = FLOOR_ONLY,
     longest_delay_s: float = DEFAULT_OPTIONS.longest_delay_s,
     switchable_colliders: bool = False,
+    step_s: float = DEFAULT_OPTIONS.step_s,
 ) -> AvatarModel:
     """Build the avatar of a person.
 
@@ -88,6 +89,7 @@ def avatar_model(
         longest_delay_s: the longest latency that can be set while the model runs.
         switchable_colliders: add the figure's convex pieces next to the simple shapes even where
             the configuration does not use them, so that they can be chosen while the model runs.
+        step_s: the time step of the simulation.
 
     Raises:
         BodyError: the configuration lacks an indispensable part, a length is not plausible, or the
@@ -112,6 +114,7 @@ def avatar_model(
         colliding=configuration.colliding,
         delays_s=configuration.delays_s,
         carried_parts=carried_parts(configuration.compliance),
+        step_s=step_s,
     )
     colliders = Colliders(
         {part: configuration.collider_of(part) for part in body.parts},

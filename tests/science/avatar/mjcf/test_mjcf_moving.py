@@ -14,6 +14,7 @@ from app.science.avatar.configuration.model_options import TIMESTEP_S, ModelOpti
 from app.science.avatar.mjcf.gains import default_settings
 from app.science.avatar.mjcf.mjcf import build_mjcf, driven_axes
 from app.science.avatar.mjcf.scene import LooseBox, Scene, SceneBox
+from app.simulated_people.visits import WITHOUT_FINGERS_STEP_S
 from tests.science.avatar.bodies import (
     CARRIED,
     EMPTY,
@@ -24,6 +25,8 @@ from tests.science.avatar.bodies import (
     settings_of,
     warnings_of,
 )
+
+WALL = SceneBox("wall", (0.0, 1.43, -0.5), (1.5, 0.6, 0.005))
 
 
 @pytest.mark.parametrize("hips", ["carried", "welded"])
@@ -72,24 +75,46 @@ def test_added_latency_can_be_changed_while_the_model_runs() -> None:
 @pytest.mark.parametrize("hips", ["carried", "welded"])
 def test_a_hand_at_two_metres_a_second_stops_at_a_wall(hips: str) -> None:
     """A hand at 2 m/s enters a wall by at most 5 mm and never passes it."""
-    wall = SceneBox("wall", (0.0, 1.43, -0.5), (1.5, 0.6, 0.005))
     options = WELDED if hips == "welded" else CARRIED
-    model, data = loaded(mjcf_of(build_body(1.75), scene=Scene((wall,)), options=options))
-    motor, geom = model.actuator("LeftUpperArmY").id, model.geom("wall").id
-    deepest, fastest = 0.0, 0.0
-    for step in range(700):
-        angle = min(step * TIMESTEP_S * 3.5, 1.0)
-        data.ctrl[2 * motor : 2 * motor + 2] = angle, 3.5 if angle < 1.0 else 0.0
-        hand = np.array(data.body("LeftHand").xpos)
-        mujoco.mj_step(model, data)
-        speed = float(np.linalg.norm(data.body("LeftHand").xpos - hand)) / TIMESTEP_S
-        touching = [c for c in data.contact if geom in (c.geom1, c.geom2)]
-        fastest = max(fastest, speed if not touching else 0.0)
-        deepest = min([deepest, *(c.dist for c in touching)])
+    model, data = loaded(mjcf_of(build_body(1.75), scene=Scene((WALL,)), options=options))
+    fastest, deepest = _beaten_against_the_wall(model, data)
     assert fastest > 1.8
     assert -0.005 <= deepest < -0.0005
     assert data.body("LeftMiddleDistal").xpos[2] > -0.5
     assert warnings_of(data) == 0
+
+
+def test_a_hand_without_fingers_stops_at_a_wall_in_longer_steps_too() -> None:
+    """With the steps of a pilot's body without fingers, a hand enters a wall by at most 6 mm."""
+    options = replace(CARRIED, step_s=WITHOUT_FINGERS_STEP_S)
+    body = build_body(1.75, parts=NO_FINGERS)
+    model, data = loaded(mjcf_of(body, scene=Scene((WALL,)), options=options))
+    assert model.opt.timestep == pytest.approx(0.003)
+    fastest, deepest = _beaten_against_the_wall(model, data)
+    assert fastest > 1.8
+    assert -0.006 <= deepest < -0.0005
+    assert data.body("LeftHand").xpos[2] > -0.5
+    assert warnings_of(data) == 0
+
+
+def _beaten_against_the_wall(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
+    """Swing the left arm into `WALL`; return its fastest speed, m/s, and its least distance, m."""
+    motor, geom, step_s = (
+        model.actuator("LeftUpperArmY").id,
+        model.geom("wall").id,
+        model.opt.timestep,
+    )
+    deepest, fastest = 0.0, 0.0
+    for step in range(round(1.4 / step_s)):
+        angle = min(step * step_s * 3.5, 1.0)
+        data.ctrl[2 * motor : 2 * motor + 2] = angle, 3.5 if angle < 1.0 else 0.0
+        hand = np.array(data.body("LeftHand").xpos)
+        mujoco.mj_step(model, data)
+        speed = float(np.linalg.norm(data.body("LeftHand").xpos - hand)) / step_s
+        touching = [c for c in data.contact if geom in (c.geom1, c.geom2)]
+        fastest = max(fastest, speed if not touching else 0.0)
+        deepest = min([deepest, *(c.dist for c in touching)])
+    return fastest, deepest
 
 
 def test_jumping_targets_never_explode() -> None:
