@@ -6,7 +6,6 @@ once the participant's stature is known and the T-pose is held.
 """
 
 import asyncio
-import time
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from app.client import Json, RoadClient, TelemetryClient, TelemetryError, call_with_retry
 from app.protocol import Tasks
 from app.protocol.avatar import AvatarFile, configuration_of
+from app.rehearsal.frame_clock import FrameClock
 from app.rehearsal.road_run import CrossingRun
 from app.rehearsal.road_shape import RoadShape
 from app.rehearsal.task_run import BoxRun
@@ -28,7 +28,7 @@ from app.science.simulation import GoalKind
 from app.science.skeleton import JOINT_NAMES, Pose, build_skeleton
 from app.science.tasks import Laterality, Limb, TaskLayout, TaskRules
 from app.simulated_people.avatars import CannotChange, DelayedCopy, PhysicsBody, RemoteAvatar
-from app.simulated_people.body import FRAME_RATE_HZ, Person
+from app.simulated_people.body import Person
 from app.simulated_people.goals import goal_of
 from app.wire import (
     ACTIVE,
@@ -52,9 +52,6 @@ WITHDRAWN = "withdrawn"
 ROAD_ANSWERS_S = 20.0
 """How long a rehearsal faster than real time waits for the traffic of a step."""
 _SLOWEST_M_S, _LOOKS_FOR_S = 0.55, 1.0
-
-LATE_S = 0.2
-"""How late a frame may be, in the headset's time, and still be caught up on."""
 
 
 class RoadLostError(Exception):
@@ -96,51 +93,6 @@ class FromServer:
         return await asyncio.to_thread(
             PhysicsBody, answer["mjcf"], configuration, scale, with_fingers=self.with_fingers
         )
-
-
-@dataclass
-class FrameClock:
-    """A clock that runs at `speed` seconds per second, but never beyond the last drawn frame.
-
-    So if a machine is too slow for the speed, its clock is slower, unlike that of a headset, which
-    drops frames: this can only happen in a rehearsal faster than real time. The clock does not
-    catch up on the time it has lost: it would run faster than `speed` meanwhile, and the server
-    would find more active time reported than has passed.
-    """
-
-    speed: float
-    frame: int = 0
-    lost_s: float = 0.0
-    _started_s: float = field(default_factory=time.monotonic)
-
-    def start(self) -> None:
-        """Start the clock: the first frame is due now."""
-        self._started_s = time.monotonic()
-
-    @property
-    def t_s(self) -> float:
-        """The time of the current frame."""
-        return self.frame / FRAME_RATE_HZ
-
-    @property
-    def speed_reached(self) -> float:
-        """The speed so far, which is below `speed` where the machine was too slow for it."""
-        return self.t_s / (self.t_s / self.speed + self.lost_s) if self.frame else self.speed
-
-    def now_s(self) -> float:
-        """Return the current time, which may be between two frames."""
-        return min(self.t_s, (time.monotonic() - self._started_s) * self.speed)
-
-    def wait_s(self) -> float:
-        """Return the real seconds until the next frame is due; 0 if it is late.
-
-        Faster than real time, a delay of more than `LATE_S` is lost.
-        """
-        due_in_s = self._started_s + self.t_s / self.speed - time.monotonic()
-        if self.speed > 1.0 and -due_in_s * self.speed > LATE_S:
-            self._started_s -= due_in_s
-            self.lost_s -= due_in_s
-        return max(0.0, due_in_s)
 
 
 @dataclass

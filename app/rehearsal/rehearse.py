@@ -29,7 +29,8 @@ from app.client import (
 from app.protocol import Tasks
 from app.rehearsal.answers import aspects_named
 from app.rehearsal.cast import Cast, Interruption, perform
-from app.rehearsal.headset import WITHDRAWN, FrameClock, FromServer, Headset
+from app.rehearsal.frame_clock import FrameClock
+from app.rehearsal.headset import WITHDRAWN, FromServer, Headset
 from app.resources import study_configs_dir
 from app.simulated_people.body import make_person
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
-from app.rehearsal.headset import FrameClock, FromServer, Headset
+from app.rehearsal.frame_clock import FrameClock
+from app.rehearsal.headset import FromServer, Headset
 from app.simulated_people.body import make_person
 
 

@@ -16,7 +16,8 @@ from app.features.record.telemetry.frames import phase_frames
 from app.models import ClientReport
 from app.rehearsal.answers import fill_in
 from app.rehearsal.cast import Cast, answer, operate
-from app.rehearsal.headset import FRAMES_PER_BATCH, MESSAGES_AHEAD, FrameClock, Headset
+from app.rehearsal.frame_clock import FrameClock
+from app.rehearsal.headset import FRAMES_PER_BATCH, MESSAGES_AHEAD, Headset
 from app.rehearsal.rehearse import RehearsalPlan, assembled, tasks_of
 from app.simulated_people.body import make_person
 from app.wire import StreamName

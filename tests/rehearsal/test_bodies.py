@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from app.client.telemetry import TelemetryClient
-from app.rehearsal.headset import FrameClock, Headset
+from app.rehearsal.frame_clock import FrameClock
+from app.rehearsal.headset import Headset
 from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.rotations import identity
 from app.science.skeleton import Pose, build_skeleton

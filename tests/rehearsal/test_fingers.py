@@ -6,7 +6,8 @@ from typing import cast
 import numpy as np
 
 from app.client.telemetry import TelemetryClient
-from app.rehearsal.headset import FrameClock, Headset
+from app.rehearsal.frame_clock import FrameClock
+from app.rehearsal.headset import Headset
 from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.skeleton import FINGER_PARTS, finger_of
 from app.simulated_people.avatars import PhysicsBody

@@ -9,7 +9,8 @@ import pytest
 
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
-from app.rehearsal.headset import FrameClock, Headset
+from app.rehearsal.frame_clock import FrameClock
+from app.rehearsal.headset import Headset
 from app.simulated_people.body import make_person
 from app.wire.messages import CompletionReport, ContactReport, PhaseOrder
 from tests.protocol.helpers import study

@@ -18,7 +18,8 @@ from app.client.telemetry import TelemetryClient
 from app.database import open_database
 from app.models import JointErrorRow
 from app.rehearsal.cast import Cast, perform
-from app.rehearsal.headset import FrameClock, Headset
+from app.rehearsal.frame_clock import FrameClock
+from app.rehearsal.headset import Headset
 from app.rehearsal.rehearse import (
     RehearsalPlan,
     RehearsalReport,
