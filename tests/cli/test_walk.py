@@ -1,16 +1,15 @@
 """Tests of `reembody walk`: fitting, sampling and evaluating from files, and refusals."""
 
-import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner, Result
 
-from app.cli.commands import app
-from app.cli.errors import UNUSABLE
-from app.science.walking.synthetic import POPULATIONS, person_of, straight_path, walk_along
+from tests.cli.walk_command import QUICK
+from tests.cli.walk_command import figures as _figures
+from tests.cli.walk_command import refusal as _refusal
+from tests.cli.walk_command import run as _run
+from tests.cli.walk_command import write_walks as _write_walks
 
 OPEN = """
 key: hall
@@ -20,42 +19,6 @@ obstacles:
 places: {door: [0, 0], desk: [0, 2]}
 """
 CLOSED = OPEN.replace("size_m: [1.0, 0.4]", "size_m: [3.99, 0.4]")
-QUICK = ("--entries", 300, "--k", 30, "--reading", "time-aware")
-
-
-def _run(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["walk", *(str(argument) for argument in arguments)])
-
-
-def _figures(*arguments: object) -> dict[str, Any]:
-    result = _run(*arguments, "--json")
-    assert result.exit_code == 0, result.output
-    figures = json.loads(result.stdout)
-    assert isinstance(figures, dict)
-    return figures
-
-
-def _refusal(*arguments: object) -> str:
-    result = _run(*arguments)
-    assert result.exit_code == UNUSABLE, result.output
-    assert result.stdout == ""
-    return result.stderr
-
-
-def _write_walks(folder: Path, people: range) -> list[Path]:
-    """Write three straight walks for each person, one file per walk."""
-    files = []
-    for number in people:
-        rng = np.random.default_rng((4, number))
-        person = person_of(POPULATIONS[0], number, rng)
-        for at, length in enumerate((1.0, 2.0, 3.0)):
-            track = walk_along(person, straight_path(length), rng)
-            rows = [f"{number},{t:.4f},{x:.4f},{y:.4f}" for t, (x, y) in
-                    zip(track.times_s[::2], track.xy_m[::2], strict=True)]  # fmt: skip
-            path = folder / f"walker-{number}-{at}.csv"
-            path.write_text("\n".join(["subject,time_s,x_m,y_m", *rows]) + "\n")
-            files.append(path)
-    return files
 
 
 @pytest.fixture(scope="module")

@@ -2,8 +2,9 @@
 
 A header names columns, in any case: `id` (or subject, person, participant, ped), `t`, `time`,
 `time_s`, `time_ms` or `frame`, and `x`, `y`, each of these two with a unit if it is not metres
-(`x_cm`, `y [mm]`, `x_ft`). Other columns are ignored. Columns are separated by commas, semicolons,
-tabs or spaces; lines beginning with # are comments, of which `framerate: 16` is read.
+(`x_cm`, `y [mm]`, `x_ft`). Columns are separated by commas, semicolons, tabs or spaces; lines
+beginning with # are comments, of which `framerate: 16` is read. A column `scene`, and those of
+further numbers, say something about the walks (`walk_columns`); other columns are ignored.
 
 Without a header the columns are id, frame, x, y (z) in centimetres, as in the trajectories of the
 pedestrian dynamics data archive of Juelich. If time is a frame number, the rate must be known.
@@ -12,11 +13,17 @@ pedestrian dynamics data archive of Juelich. If time is a frame number, the rate
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from app.adapters.captures import CaptureError, text_lines
+from app.adapters.walks.walk_columns import (
+    WalkColumns,
+    numbers_of,
+    pieces,
+    walk_columns,
+)
 from app.science.rotations import FloatArray
 from app.science.walking.records import Kind, Track, WalkingError
 
@@ -44,19 +51,22 @@ class TrackReading:
         metres_per_unit: the unit of x and y; None to use the header's unit, or else metres.
         statures_m: stature by subject.
         kind: whether people or a program walked.
+        numbers: the further numbers to read, which other columns may hold; None for all of them.
     """
 
     rate_hz: float | None = None
     metres_per_unit: float | None = None
     statures_m: Mapping[str, float] = field(default_factory=dict)
     kind: Kind = "human"
+    numbers: tuple[str, ...] | None = ()
 
 
 @dataclass(frozen=True)
 class _Layout:
     """The columns' indices and factors to SI; `person` is -1 if all rows are of one person.
 
-    `time_name` is the name of the column of time; `assumed` is said about the file.
+    `time_name` is the name of the column of time; `assumed` is said about the file; `about` are the
+    columns of scene and further numbers.
     """
 
     person: int
@@ -69,6 +79,7 @@ class _Layout:
     rows_from: int
     time_name: str = "the second"
     assumed: tuple[str, ...] = ()
+    about: WalkColumns = field(default_factory=WalkColumns)
 
 
 _AS_IT_IS = TrackReading()
@@ -76,10 +87,23 @@ _AS_IT_IS = TrackReading()
 
 @dataclass(frozen=True, eq=False)
 class TrackTable:
-    """The tracks of a table, and what had to be assumed because neither it nor the user said it."""
+    """The tracks of a table.
+
+    Attributes:
+        tracks: one for each person, or several where the scene changes.
+        assumed: what had to be assumed because neither the table nor the user said it.
+        scenes: the line at which each scene is first named.
+        numbers: the names of the further numbers that it has.
+        spoilt: what is wrong with columns that could have been further numbers.
+        columns: the names of all columns that could be asked for as further numbers.
+    """
 
     tracks: list[Track]
     assumed: tuple[str, ...]
+    scenes: Mapping[str, int] = field(default_factory=dict)
+    numbers: tuple[str, ...] = ()
+    spoilt: tuple[str, ...] = ()
+    columns: tuple[str, ...] = ()
 
 
 def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) -> list[Track]:
@@ -90,6 +114,8 @@ def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) ->
 def read_track_table(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) -> TrackTable:
     """Read the tracks of all people of a table, in the order in which they appear.
 
+    A change of scene within the rows of a person begins another track.
+
     Args:
         data: the content of the file.
         name: the name of the file, which becomes the source of the tracks.
@@ -98,15 +124,18 @@ def read_track_table(data: bytes, *, name: str, reading: TrackReading = _AS_IT_I
     Raises:
         CaptureError: (with the line) a missing column, a cell that is not a number, NaN, a person
             with only one sample, times that do not increase, times that are not in seconds,
-            positions that are not in metres.
+            positions that are not in metres; a further number that was asked for is not one.
     """
     lines = list(text_lines(data))
     layout = _layout(lines, reading)
-    people: dict[str, list[tuple[float, float, float]]] = {}
+    people: dict[str, list[tuple[float, ...]]] = {}
+    scenes: dict[str, list[str]] = {}
     for at in range(layout.rows_from, len(lines)):
         if lines[at].strip() and not lines[at].lstrip().startswith("#"):
-            person, sample = _sample(lines[at], at + 1, layout)
+            person, scene, sample = _sample(lines[at], at + 1, layout)
             people.setdefault(person, []).append(sample)
+            if layout.about.scene >= 0:
+                scenes.setdefault(person, []).append(scene)
             if len(people) > MOST_PEOPLE or at > MOST_ROWS:
                 raise CaptureError(
                     f"more than {MOST_PEOPLE} people or {MOST_ROWS} rows: split it.", line=at + 1
@@ -114,9 +143,19 @@ def read_track_table(data: bytes, *, name: str, reading: TrackReading = _AS_IT_I
     if not people:
         raise CaptureError("the table has no rows.")
     tracks = [
-        _track(person, np.array(rows), name, reading, layout) for person, rows in people.items()
+        _track(person, scene, piece, name, reading, layout)
+        for person, rows in people.items()
+        for scene, piece in pieces(scenes.get(person, []), np.array(rows), person)
     ]
-    return TrackTable(tracks, layout.assumed)
+    about = layout.about
+    return TrackTable(
+        tracks,
+        layout.assumed,
+        about.scenes,
+        tuple(about.usable),
+        tuple(about.spoilt),
+        about.free,
+    )
 
 
 def _layout(lines: list[str], reading: TrackReading) -> _Layout:
@@ -128,7 +167,8 @@ def _layout(lines: list[str], reading: TrackReading) -> _Layout:
     if first == len(lines):
         raise CaptureError("the file is empty.")
     separator = next((mark for mark in (";", "\t", ",") if mark in lines[first]), None)
-    cells = [cell.strip().strip('"').lower() for cell in lines[first].split(separator)]
+    names = [cell.strip().strip('"') for cell in lines[first].split(separator)]
+    cells = [name.lower() for name in names]
     if not any(cell and cell[0].isalpha() and cell != "nan" for cell in cells):
         if len(cells) not in (4, 5):
             raise CaptureError(
@@ -149,7 +189,9 @@ def _layout(lines: list[str], reading: TrackReading) -> _Layout:
             if reading.metres_per_unit
             else ("no header: the columns were taken as id, frame, x, y in centimetres",),
         )
-    return _named(cells, separator, first, rate_hz, reading)
+    found = _named(cells, separator, first, rate_hz, reading)
+    taken = (found.person, found.time, found.x, found.y)
+    return replace(found, about=walk_columns(names, taken, reading.numbers))
 
 
 def _named(
@@ -207,7 +249,8 @@ def _step_s(rate_hz: float | None, at: int) -> float:
     return 1.0 / rate_hz
 
 
-def _sample(line: str, number: int, layout: _Layout) -> tuple[str, tuple[float, float, float]]:
+def _sample(line: str, number: int, layout: _Layout) -> tuple[str, str, tuple[float, ...]]:
+    """Return the person and the scene of a row, and its time, place and further numbers."""
     cells = line.split(layout.separator)
     columns = (layout.time, layout.x, layout.y)
     if len(cells) <= max(*columns, layout.person):
@@ -227,15 +270,31 @@ def _sample(line: str, number: int, layout: _Layout) -> tuple[str, tuple[float, 
         values.append(value)
     person = cells[layout.person].strip().strip('"') if layout.person >= 0 else "1"
     time_s = values[0] * layout.seconds
-    return person, (time_s, values[1] * layout.metres[0], values[2] * layout.metres[1])
+    scene, others = layout.about.read(cells, number)
+    place = (values[1] * layout.metres[0], values[2] * layout.metres[1])
+    return person, scene, (time_s, *place, *others)
 
 
 def _track(
-    person: str, rows: FloatArray, name: str, reading: TrackReading, layout: _Layout
+    person: str,
+    scene: str | None,
+    rows: FloatArray,
+    name: str,
+    reading: TrackReading,
+    layout: _Layout,
 ) -> Track:
-    times_s, xy_m = rows[:, 0] - rows[0, 0], rows[:, 1:]
+    times_s, xy_m = rows[:, 0] - rows[0, 0], rows[:, 1:3]
     try:
-        track = Track(times_s, xy_m, person, name, reading.kind, reading.statures_m.get(person))
+        track = Track(
+            times_s,
+            xy_m,
+            person,
+            name,
+            reading.kind,
+            reading.statures_m.get(person),
+            scene,
+            numbers_of(layout.about, rows[:, 3:]),
+        )
     except WalkingError as error:
         raise CaptureError(str(error)) from error
     waits_s = np.diff(times_s)

@@ -18,8 +18,30 @@ _Walks = Annotated[
 _Scene = Annotated[
     str | None, typer.Option(help="Scene file, or the key of a shipped scene; else open floor.")
 ]
+_WalksScene = Annotated[
+    str | None,
+    typer.Option(
+        help="Scene of recordings for which neither a column `scene` of their table nor one of"
+        " --people names another: a scene file, or the key of a shipped scene; else open floor."
+    ),
+]
 _People = Annotated[
-    Path | None, typer.Option(help="CSV: subject, stature_m, and file if files name no subject.")
+    Path | None,
+    typer.Option(
+        help="CSV: subject, stature_m, file if files name no subject, scene, and numbers such as"
+        " load_kg; a row with a file is about that recording, else about all of the subject."
+    ),
+]
+_DependsOn = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="A column of --people or of the tables, such as load_kg, on which walks depend besides"
+        " length, turning and stature; up to three times."
+    ),
+]
+_Given = Annotated[
+    list[str] | None,
+    typer.Option("--with", help="A further dependency of the model, as in load_kg=8; repeatable."),
 ]
 _Rate = Annotated[
     float | None, typer.Option(help="Frames a second, where a table's time is a frame number.")
@@ -32,8 +54,9 @@ _Seed = Annotated[int, typer.Option(help="Seed of all random draws.", min=0)]
 def fit(
     walks: _Walks,
     out: Annotated[Path, typer.Option(help="Model file to write.")],
-    scene: _Scene = None,
+    scene: _WalksScene = None,
     people: _People = None,
+    depends_on: _DependsOn = None,
     rate_hz: _Rate = None,
     unit: _Unit = None,
     seed: _Seed = 1,
@@ -51,7 +74,7 @@ def fit(
     from app.cli.walk.run import FitOrder, WalksOrder, carry_out_fit
 
     recorded = WalksOrder(tuple(walks), scene, people, rate_hz, unit)
-    order = FitOrder(recorded, out, seed, k, entries, reading)
+    order = FitOrder(recorded, out, seed, k, entries, reading, tuple(depends_on or ()))
     with reported(ValueError, OSError), Activity("reading the walks") as activity:
         done = carry_out_fit(order, activity.now)
     print(json.dumps(texts.fit_json(done)) if as_json else texts.fit_text(done))
@@ -72,6 +95,7 @@ def sample(
         str | None, typer.Option("--to", help="Place of the scene, or x,y in m.")
     ] = None,
     stature: Annotated[float | None, typer.Option(help="Of the walker, m.")] = None,
+    given: _Given = None,
     count: Annotated[int, typer.Option(help="How many draws.")] = 100,
     which: Annotated[
         str | None, typer.Option("--model", help="mixed (if the file has it), prob, adapt or stat.")
@@ -83,7 +107,8 @@ def sample(
     from app.cli.walk import output as texts
     from app.cli.walk.run import SampleOrder, carry_out_sample
 
-    order = SampleOrder(model, length, path, scene, start, goal, stature, count, which, seed)
+    asked = (length, path, scene, start, goal, stature, count, which, seed)
+    order = SampleOrder(model, *asked, tuple(given or ()))
     with reported(ValueError, OSError):
         done = carry_out_sample(order)
     print(json.dumps(texts.sample_json(done)) if as_json else texts.sample_text(done))
@@ -93,7 +118,7 @@ def sample(
 def evaluate(
     model: Annotated[Path, typer.Argument(help="A file that `walk fit` wrote.")],
     walks: _Walks,
-    scene: _Scene = None,
+    scene: _WalksScene = None,
     people: _People = None,
     rate_hz: _Rate = None,
     unit: _Unit = None,

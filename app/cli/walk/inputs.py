@@ -1,19 +1,18 @@
-"""Read the inputs of `reembody walk`: walks from tracks and captures, people, scenes."""
+"""Read the walks of `reembody walk` from tracks and captures, each in its scene."""
 
-import csv
-import io
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
 from app.adapters.captures import CaptureError, read_capture_file
-from app.adapters.walks import load_scene, load_shipped, shipped_scenes
 from app.adapters.walks.track_table import UNITS_M, TrackReading, TrackTable, read_track_table
-from app.errors import missing_file
-from app.protocol import ConfigError
+from app.cli.walk.people import People
+from app.cli.walk.scenes import NamedScenes
 from app.science.rig import RigError
-from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.planning import OPEN_FLOOR
 from app.science.walking.recording import (
     LeftOut,
     Recorded,
@@ -25,26 +24,12 @@ from app.science.walking.recording import (
     track_of_motion,
     walks_of,
 )
-from app.science.walking.records import PlannedWalk, Planner, Track, WalkingError
-from app.science.walking.scene import Scene, open_scene
+from app.science.walking.records import PlannedWalk, Track, WalkingError, known_for
 
 MOST_BYTES = 500_000_000
 _NAMES_SHOWN = 6
 _PERSON_COLUMNS = {"id", "subject", "person", "participant", "ped", "pers_id", "agent"}
 _TRACK_COLUMNS = tuple({axis, *(f"{axis}_{unit}" for unit in UNITS_M)} for axis in ("x", "y"))
-
-
-@dataclass(frozen=True)
-class People:
-    """The people who walked.
-
-    Attributes:
-        statures_m: stature by subject.
-        subjects: subject by file name, for files that do not name one.
-    """
-
-    statures_m: dict[str, float] = field(default_factory=dict)
-    subjects: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -69,57 +54,6 @@ def tables_of(rate_hz: float | None, unit: str | None) -> Tables:
     return Tables(rate_hz, None if unit is None else UNITS_M[unit])
 
 
-def read_people(path: Path | None) -> People:
-    """Read a CSV with the columns subject, stature_m, and optionally file.
-
-    Raises:
-        ValueError: a column is missing, or a stature is not a number.
-        OSError: it cannot be opened.
-    """
-    people = People()
-    if path is None:
-        return people
-    reader = csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig")))
-    if "subject" not in (reader.fieldnames or ()):
-        raise ValueError(f"{path}: needs the columns subject, stature_m and, optionally, file.")
-    for row in reader:
-        subject, stature = (row["subject"] or "").strip(), (row.get("stature_m") or "").strip()
-        if stature:
-            try:
-                people.statures_m[subject] = float(stature)
-            except ValueError:
-                raise ValueError(
-                    f"{path}, line {reader.line_num}: stature_m is {stature!r}, not a number."
-                ) from None
-        if name := (row.get("file") or "").strip():
-            people.subjects[name] = subject
-    return people
-
-
-def read_scene(key: str | None) -> Scene | None:
-    """Read a shipped scene by its key, or a scene file; None stands for open floor.
-
-    Raises:
-        ValueError: the file is not a valid scene; lists all its problems, each with its line.
-        OSError: it cannot be opened.
-    """
-    if key is None:
-        return None
-    if key in shipped_scenes():
-        return load_shipped(key)
-    path = Path(key)
-    if not path.exists():
-        shipped = ", ".join(shipped_scenes())
-        raise ValueError(f"--scene: {missing_file(path)}; shipped with the product are {shipped}.")
-    try:
-        return load_scene(path.read_text(encoding="utf-8-sig"))
-    except ConfigError as error:
-        problems = "; ".join(f"line {one.line}: {one.message}" for one in error.problems)
-        raise ValueError(f"{path}: {problems}") from error
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path}: not UTF-8 text ({error})") from error
-
-
 @dataclass(frozen=True, eq=False)
 class Entries:
     """The walks of some files, each with its path, and the walks that were left out.
@@ -138,22 +72,41 @@ class Entries:
     named_by_file: set[str] = field(default_factory=set)
     notices: list[str] = field(default_factory=list)
 
+    @property
+    def scenes(self) -> list[str | None]:
+        """The key of the scene of each entry, None for the open floor."""
+        keys = (entry.walk.scene for entry in self.entries)
+        return [None if key == OPEN_FLOOR else key for key in keys]
+
 
 def read_entries(
-    files: Sequence[Path], people: People, scene: Scene | None, tables: Tables = Tables()
+    files: Sequence[Path],
+    people: People,
+    scenes: NamedScenes,
+    tables: Tables = Tables(),
+    numbers: Sequence[str] = (),
 ) -> Entries:
-    """Read all walks of some files, with their paths: on open floor if there is no scene.
+    """Read all walks of some files, each with its path in the scene in which it was walked.
+
+    Args:
+        files: tables of tracks, and captures.
+        people: who walked.
+        scenes: the scenes that are named, and that of recordings that name none.
+        tables: what tables do not say.
+        numbers: the further numbers that each walk needs; a walk without one is left out.
 
     Raises:
         ValueError: a file cannot be used, or contains no movement from one place to another; no
-            walk can be used, because no path connects its ends, say.
+            walk can be used, because no path connects its ends, say; a number is not known for
+            enough walks.
         OSError: a file cannot be opened.
     """
-    found, recorded = Entries(), Recorded()
-    planner = None if scene is None else LazyThetaPlanner(scene)
+    found, recorded, planners = Entries(), Recorded(), scenes.planned()
+    columns: set[str] = set(people.columns)
     for path in files:
-        table = _tracks(path, people, tables)
-        tracks = table.tracks
+        table = _tracks(path, people, tables, numbers)
+        columns |= set(table.columns)
+        tracks = [_completed(track, path, people, scenes, table, numbers) for track in table.tracks]
         walks = [walk for track in tracks for walk in walks_of(track)]
         rounds = [walk for track in tracks for walk in rounds_of(track)]
         if not walks and not rounds:
@@ -172,9 +125,8 @@ def read_entries(
             if objection := recorded.objection(walk, name):
                 found.left_out.append((name, objection))
                 continue
-            used: Planner = planner or LazyThetaPlanner(open_scene(walk.start_m, walk.goal_m))
             try:
-                entry = entry_of(walk, used)
+                entry = entry_of(walk, planners.planner_of(walk))
             except WalkingError as error:
                 found.left_out.append((name, str(error)))
                 continue
@@ -196,7 +148,57 @@ def read_entries(
     if not found.entries:
         listed = "; ".join(f"{name}: {reason}" for name, reason in found.left_out)
         raise ValueError(f"no walk can be used. {listed}.")
-    return found
+    _require_columns(numbers, columns)
+    return _with_numbers(found, numbers)
+
+
+def _completed(
+    track: Track,
+    path: Path,
+    people: People,
+    scenes: NamedScenes,
+    table: TrackTable,
+    numbers: Sequence[str],
+) -> Track:
+    """Return a track with the scene and the further numbers of its recording.
+
+    What the table itself says of a row counts before what the list of people says of its file.
+    """
+    if track.scene is None:
+        scene = people.scene_of(path.name, track.subject) or scenes.usual
+    else:
+        at = f"{path}, line {table.scenes[track.scene]}"
+        scene = scenes.find(track.scene, path.parent, at)
+    others = {name: track.others[name] for name in numbers if name in track.others}
+    for name in numbers:
+        given = people.number_of(name, path.name, track.subject)
+        if name not in others and given is not None:
+            others[name] = np.full(len(track.times_s), given)
+    return replace(track, scene=scene, others=others)
+
+
+def _require_columns(numbers: Sequence[str], columns: set[str]) -> None:
+    missing = [name for name in numbers if name not in columns]
+    if missing:
+        others = ", ".join(sorted(columns)) or "none"
+        raise ValueError(
+            f"there is no column {', '.join(missing)}, neither in --people nor in a table of"
+            f" tracks; columns that a model could depend on are {others}"
+        )
+
+
+def _with_numbers(found: Entries, numbers: Sequence[str]) -> Entries:
+    """Leave out the walks that lack one of the numbers; raise WalkingError if they are too many."""
+    without = known_for(found.entries, numbers)
+    return replace(
+        found,
+        entries=[one for at, one in enumerate(found.entries) if at not in without],
+        names=[one for at, one in enumerate(found.names) if at not in without],
+        left_out=[
+            *found.left_out,
+            *((found.names[at], reason) for at, reason in without.items()),
+        ],
+    )
 
 
 _WALK = "a walk ends 0.25 m or farther from its start and is faster than 0.1 m/s"
@@ -241,11 +243,11 @@ def _some(names: list[str]) -> str:
     return ", ".join(names[:_NAMES_SHOWN]) + (", ..." if names[_NAMES_SHOWN:] else "")
 
 
-def _tracks(path: Path, people: People, tables: Tables) -> TrackTable:
+def _tracks(path: Path, people: People, tables: Tables, numbers: Sequence[str]) -> TrackTable:
     try:
         header = _header(path)
         if all(header & names for names in _TRACK_COLUMNS) or path.suffix.lower() == ".txt":
-            return _table(path, header, people, tables)
+            return _table(path, header, people, tables, numbers)
         subject = people.subjects.get(path.name, path.stem)
         walker = Walker(subject, path.name, people.statures_m.get(subject))
         return TrackTable([track_of_motion(read_capture_file(path).motion, walker)], ())
@@ -263,11 +265,14 @@ def _header(path: Path) -> set[str]:
     return {cell.strip().strip('"') for cell in first.replace(";", ",").split(",")}
 
 
-def _table(path: Path, header: set[str], people: People, tables: Tables) -> TrackTable:
+def _table(
+    path: Path, header: set[str], people: People, tables: Tables, numbers: Sequence[str]
+) -> TrackTable:
     reading = TrackReading(
         rate_hz=tables.rate_hz,
         metres_per_unit=tables.metres_per_unit,
         statures_m=people.statures_m,
+        numbers=tuple(numbers),
     )
     table = read_track_table(path.read_bytes(), name=path.name, reading=reading)
     if path.suffix.lower() == ".txt" or header & _PERSON_COLUMNS:
@@ -275,5 +280,5 @@ def _table(path: Path, header: set[str], people: People, tables: Tables) -> Trac
     # Without a column of people, the file is about one person, named after the file.
     subject = people.subjects.get(path.name, path.stem)
     stature_m = people.statures_m.get(subject)
-    only = replace(table.tracks[0], subject=subject, stature_m=stature_m)
-    return TrackTable([only], table.assumed)
+    own = [replace(track, subject=subject, stature_m=stature_m) for track in table.tracks]
+    return replace(table, tracks=own)

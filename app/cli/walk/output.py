@@ -1,5 +1,6 @@
 """Format the results of `reembody walk`: JSON for scripts, tables for people."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
 
@@ -8,15 +9,15 @@ import numpy as np
 from app.cli.walk.run import Evaluated, Fitted, Sampled
 from app.science.walking.evaluation import (
     COVERAGES,
+    PAPERS,
     PERCENTILES,
     Comparison,
     Evaluation,
     reason_for_no_interval,
 )
 from app.science.walking.maps import SuitabilityOptions
-from app.science.walking.models import MIXED, FittedWalking
+from app.science.walking.models import MIXED, WITHOUT, FittedWalking
 from app.science.walking.records import TURNING
-from app.science.walking.travel_times import BASELINES
 
 _SHOWN = 6
 
@@ -41,8 +42,12 @@ def fit_json(done: Fitted) -> dict[str, object]:
                 "length_m": entry.path.length_m,
                 "turning_rad": entry.dependencies[TURNING] * entry.path.length_m,
                 "own_path": entry.is_own_path,
+                "scene": scene,
+                "others": {one: entry.dependencies[one] for one in done.order.depends_on},
             }
-            for name, entry in zip(done.walks.names, done.walks.entries, strict=True)
+            for name, entry, scene in zip(
+                done.walks.names, done.walks.entries, done.walks.scenes, strict=True
+            )
         ],
         "left_out": _listed(done.walks.left_out),
         "notices": done.walks.notices,
@@ -71,6 +76,13 @@ def fit_text(done: Fitted) -> str:
     ]
     if done.left_out:
         lines.append(f"  {'left out':<14}{', '.join(done.left_out)}: not known for all walks")
+    scenes = Counter(done.walks.scenes)
+    if set(scenes) != {None}:
+        counted = (
+            f"{_counted(count, 'walk')} {'on the open floor' if key is None else f'in {key}'}"
+            for key, count in scenes.most_common()
+        )
+        lines.append(f"  {'scenes':<14}{', '.join(counted)}")
     own = [
         f"{name} ({entry.walk.length_m:.2f} m, {entry.path.length_m:.2f} m without sway)"
         for name, entry in zip(done.walks.names, done.walks.entries, strict=True)
@@ -206,6 +218,7 @@ def evaluation_json(done: Evaluated) -> dict[str, object]:
 def evaluation_text(done: Evaluated) -> str:
     """Format the scores of `walk evaluate` for people."""
     fit, result = done.fit, done.result
+    width = max(15, 2 + max(len(name) for name in result.outcomes))
     lines = [
         (
             f"{_counted(len(result.truth_s), 'walk')} of {_counted(result.people, 'person')},"
@@ -215,7 +228,7 @@ def evaluation_text(done: Evaluated) -> str:
         *(f"  {'notice':<14}{text}" for text in done.walks.notices),
         "",
         (
-            f"  {'model':<15}{'CRPS':>8}{'|dt|, one draw: 5 %':>22}{'25 %':>8}{'median':>8}"
+            f"  {'model':<{width}}{'CRPS':>8}{'|dt|, one draw: 5 %':>22}{'25 %':>8}{'median':>8}"
             f"{'75 %':>8}{'95 %':>8}{'in 50 %':>9}{'in 90 %':>9}"
         ),
     ]
@@ -225,7 +238,7 @@ def evaluation_text(done: Evaluated) -> str:
         inside = "".join(f"{100.0 * share:>8.0f}%" for share in result.coverage(name))
         cells = "".join(f"{value:>8.3f}" for value in others)
         shown = inside if outcome.draws_s.shape[1] > 1 else f"{'-':>9}{'-':>9}"
-        lines.append(f"  {name:<15}{outcome.mean_crps_s:>8.3f}{first:>22.3f}{cells}{shown}")
+        lines.append(f"  {name:<{width}}{outcome.mean_crps_s:>8.3f}{first:>22.3f}{cells}{shown}")
     lines.append("")
     lines += [_comparison_text(one, result) for one in _comparisons(result)]
     for name, gain_s, low_s, high_s in _gains(result):
@@ -235,6 +248,11 @@ def evaluation_text(done: Evaluated) -> str:
             else f", 95 % of people drawn again {low_s:+.3f} to {high_s:+.3f}"
         )
         lines.append(f"  {MIXED} against {name}: CRPS {gain_s:+.3f} s smaller{interval}")
+        if name.startswith(WITHOUT) and gain_s <= 0.0:
+            lines.append(
+                f"  With {name.removeprefix(WITHOUT)} these walks are predicted no better than"
+                " without: a fit that leaves it out serves them as well"
+            )
     if too_few := _too_few(result):
         lines.append(f"  No intervals and no tests: {too_few}")
     return "\n".join(lines)
@@ -295,10 +313,12 @@ def _comparison_text(one: Comparison, result: Evaluation) -> str:
 def _gains(result: Evaluation) -> list[tuple[str, float, float | None, float | None]]:
     """Return by how much P_mixed's CRPS is smaller than each baseline's, with its interval.
 
+    One of the baselines is P_mixed without the further dependencies, if the model has some.
     With too few people the interval's ends are None.
     """
     rng = np.random.default_rng(1)
-    names = [curve.name for curve in BASELINES if curve.name in result.outcomes]
+    names = [name for name in result.outcomes if name not in (MIXED, *PAPERS)]
+    names = names if MIXED in result.outcomes else []
     found: list[tuple[str, float, float | None, float | None]] = []
     for name in names:
         gain_s, low_s, high_s = result.better_by_s(MIXED, name, rng)

@@ -8,7 +8,9 @@ import numpy as np
 
 from app.adapters.walks.model_file import read_model, write_model
 from app.cli.errors import require_folder_of
-from app.cli.walk.inputs import Entries, read_entries, read_people, read_scene, tables_of
+from app.cli.walk.inputs import Entries, read_entries, tables_of
+from app.cli.walk.people import read_people
+from app.cli.walk.scenes import NamedScenes, read_scene
 from app.science.walking.evaluation import Evaluation, evaluate
 from app.science.walking.following import SteeringFollower
 from app.science.walking.maps import (
@@ -28,6 +30,7 @@ from app.science.walking.models import (
     SteeringModel,
     baseline_models,
     fitted,
+    model_without_further,
 )
 from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.recording import dependencies_of
@@ -40,6 +43,9 @@ from app.science.walking.records import (
     Point,
     Walk,
     WalkingError,
+    check_names,
+    check_varies,
+    further_of,
 )
 from app.science.walking.scene import Scene
 from app.science.walking.synthetic import straight_path
@@ -57,7 +63,7 @@ MOST_METRES = 1000.0
 
 @dataclass(frozen=True)
 class WalksOrder:
-    """The files of recorded walks, with their scene and people."""
+    """The files of recorded walks, with their people, and the scene of those that name none."""
 
     files: tuple[Path, ...]
     scene: str | None = None
@@ -76,6 +82,7 @@ class FitOrder:
     k: int = 100
     entries: int = 5000
     reading: str = "chosen"
+    depends_on: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -92,6 +99,8 @@ class SampleOrder:
     count: int = 100
     which: str | None = None
     seed: int = 1
+    given: tuple[str, ...] = ()
+    """Further dependencies, each as `name=number`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +110,7 @@ class Fitted:
     Attributes:
         content_hash: of the file's content.
         walks: the walks that were fitted, and those that were left out with the reason.
-        left_out: dependencies that are not known for all walks.
+        left_out: the paper's dependencies that are not known for all walks.
         cut: number of walks that the recording cuts off at their start or end.
     """
 
@@ -137,12 +146,11 @@ class Sampled:
                 f"the model was fitted without statures, so --stature {self.order.stature_m:g}"
                 " changes nothing; fit it again with --people to learn from them"
             )
-        for name in self.fit.outside(self.dependencies):
-            seen = base.vectors[:, base.names.index(name)]
-            found.append(
-                f"{name} {self.dependencies[name]:.2f} is outside what the model has seen,"
-                f" {seen.min():.2f} to {seen.max():.2f}: this is a guess"
-            )
+        found.extend(
+            f"{name} {self.dependencies[name]:.2f} is outside what the model has seen,"
+            f" {_seen(self.fit, name)}: this is a guess"
+            for name in self.fit.outside(self.dependencies)
+        )
         return (*found, *self.fit.caveats)
 
 
@@ -169,9 +177,10 @@ def carry_out_fit(order: FitOrder, now: Callable[[str], None] = lambda _step: No
     if order.reading not in READINGS:
         raise ValueError(f"--reading {order.reading!r}: {', '.join(READINGS)} are valid")
     require_folder_of(order.out)
-    read = _read(order.walks)
+    read = _read(order.walks, order.depends_on)
     entries = read.entries
-    names, left_out = _names(entries)
+    check_varies(entries, order.depends_on)
+    names, left_out = _names(entries, order.depends_on)
     people = {entry.walk.subject for entry in entries}
     if len(people) < 2:
         # Reported before the maps are made, which takes most of the time.
@@ -204,9 +213,16 @@ def carry_out_sample(order: SampleOrder) -> Sampled:
         raise ValueError(f"--count {order.count}: 1 to 100000 are valid")
     path = _path_of(order)
     fit, rules, _ = read_model(order.model)
-    dependencies = dependencies_of(path, order.stature_m)
+    further = further_of(fit.database.names)
+    dependencies = dependencies_of(path, order.stature_m, _given(order, further))
     if STATURE in fit.database.names and order.stature_m is None:
         raise ValueError(f"{order.model} depends on stature: give --stature in metres")
+    for name in further:
+        if name not in dependencies:
+            raise ValueError(
+                f"{order.model} depends on {name}: give --with {name}=NUMBER; its walks have"
+                f" {_seen(fit, name)}"
+            )
     model = fit.usual if order.which is None else fit.named(order.which)
     predictor = Predictor(model, SteeringFollower(rules))
     rng = np.random.default_rng(order.seed)
@@ -221,7 +237,7 @@ def carry_out_evaluation(
     if not 1 <= draws <= 10_000:
         raise ValueError(f"--draws {draws}: 1 to 10000 are valid")
     fit, rules, _ = read_model(model)
-    read = _read(walks)
+    read = _read(walks, further_of(fit.database.names))
     entries = read.entries
     fitted_on = {entry.walk.subject for entry in entries} & set(fit.database.subjects)
     if fitted_on and not even_fitted:
@@ -234,6 +250,7 @@ def carry_out_evaluation(
     models: list[SteeringModel] = [*fit.models]
     if fit.mixed is not None:
         models = [fit.mixed, *models, *baseline_models(fit.database, rng)]
+        models += model_without_further(fit.database, rng)
     result = evaluate(models, follower, entries, rng, draws=draws, course_of=_course)
     unpredicted = [(read.names[at], reason) for at, reason in sorted(result.left_out.items())]
     return Evaluated(fit, result, read, (*read.left_out, *unpredicted))
@@ -244,9 +261,39 @@ def _course(entry: PlannedWalk) -> str:
     return f"{round(4.0 * entry.path.length_m) / 4.0:g} m"
 
 
-def _read(order: WalksOrder) -> Entries:
-    tables = tables_of(order.rate_hz, order.unit)
-    return read_entries(order.files, read_people(order.people), read_scene(order.scene), tables)
+def _read(order: WalksOrder, numbers: tuple[str, ...]) -> Entries:
+    check_names(numbers)
+    tables, scenes = tables_of(order.rate_hz, order.unit), NamedScenes(order.scene)
+    people = read_people(order.people, scenes, numbers)
+    return read_entries(order.files, people, scenes, tables, numbers)
+
+
+def _given(order: SampleOrder, further: tuple[str, ...]) -> dict[str, float]:
+    """Return the further dependencies that were given; raise ValueError for others, or twice."""
+    found: dict[str, float] = {}
+    for text in order.given:
+        name, _, number = (part.strip() for part in text.partition("="))
+        if name in (STATURE, "stature"):
+            raise ValueError(f"--with {text!r}: give --stature in metres")
+        if name not in further or name in found:
+            valid = f"only on {', '.join(further)}, each given once" if further else "on no others"
+            raise ValueError(
+                f"--with {text!r}: besides length, turning and stature, {order.model} depends"
+                f" {valid}"
+            )
+        try:
+            found[name] = float(number)
+        except ValueError:
+            found[name] = float("nan")
+        if not np.isfinite(found[name]):
+            raise ValueError(f"--with {text!r}: {number!r} is not a number; write {name}=8, say")
+    return found
+
+
+def _seen(fit: FittedWalking, name: str) -> str:
+    """Return the range of a dependency in the walks that a model was fitted to."""
+    values = fit.database.vectors[:, fit.database.names.index(name)]
+    return f"{values.min():.2f} to {values.max():.2f}"
 
 
 def _caveats(read: Entries, cut: int) -> tuple[str, ...]:
@@ -265,11 +312,13 @@ def _caveats(read: Entries, cut: int) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _names(entries: list[PlannedWalk]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the dependencies known for all walks, and the remaining ones."""
+def _names(
+    entries: list[PlannedWalk], further: tuple[str, ...]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the model's dependencies, and those of the paper that some of the walks lack."""
     usual = (LENGTH, TURNING, STATURE)
     everywhere = tuple(n for n in usual if all(n in entry.dependencies for entry in entries))
-    return everywhere, tuple(name for name in usual if name not in everywhere)
+    return (*everywhere, *further), tuple(name for name in usual if name not in everywhere)
 
 
 def _one_person(walk: Walk, count: int) -> None:

@@ -1,6 +1,6 @@
 """Evaluate predictions on walks that the model was not fitted on."""
 
-from app.science.walking.evaluation.evaluation import Evaluation, evaluate, pooled
+from app.science.walking.evaluation.evaluation import PAPERS, Evaluation, evaluate, pooled
 from app.science.walking.evaluation.leave_one_out import (
     LeftOut,
     TimesLeftOut,
@@ -21,6 +21,7 @@ from app.science.walking.evaluation.scoring import (
 __all__ = [
     "COVERAGES",
     "LEAST_PEOPLE",
+    "PAPERS",
     "PERCENTILES",
     "Comparison",
     "Evaluation",

@@ -29,8 +29,15 @@ from app.science.walking.models import (
     person_folds,
     space_of,
     timed_walks_of,
+    without_further,
 )
-from app.science.walking.travel_times import BASELINES, StartingAndStopping, posterior_of
+from app.science.walking.travel_times import (
+    BASELINES,
+    Curve,
+    StartingAndStopping,
+    TimedWalks,
+    posterior_of,
+)
 
 NODES = 100
 """Random nodes of each map at which the radial basis is evaluated."""
@@ -117,7 +124,7 @@ class TimesLeftOut:
     """How well travel times of people who were left out are predicted.
 
     Attributes:
-        method: "mixed", or a baseline.
+        method: "mixed", a baseline, or "mixed without" the further dependencies that a user named.
         crps_s: mean CRPS over the walks.
         crps_less_s: how much smaller the CRPS of P_mixed is, and the ends of its 95 % interval over
             people, which are None with fewer than six people; all zero for P_mixed itself.
@@ -139,6 +146,9 @@ def times_left_out(
 ) -> list[TimesLeftOut]:
     """Predict travel times of people left out, by P_mixed and the baselines learnt from the others.
 
+    If the walks have further dependencies, P_mixed without them is one more baseline: they are
+    worth having if it does worse.
+
     Empty if there are fewer than three people, since two are needed to learn from, or if the
     database does not say which walks the recording cut off.
     """
@@ -148,20 +158,24 @@ def times_left_out(
     parts = [database.walked_by(fold) for fold in person_folds(database, rng, folds)]
     if any(len(set(np.array(database.subjects)[~out])) < 2 for out in parts):
         return []
+    compared: list[tuple[str, Curve, TimedWalks]] = [(MIXED, StartingAndStopping(), walks)]
+    compared += [(curve.name, curve, walks) for curve in BASELINES]
+    if plain := without_further(database):
+        compared.append((plain[0], StartingAndStopping(), timed_walks_of(plain[1])[0]))
     scores: dict[str, FloatArray] = {}
-    for curve in (StartingAndStopping(), *BASELINES):
+    for method, curve, timed in compared:
         rows = np.empty((len(walks), 3))
         for out in parts:
-            learnt = posterior_of(walks.select(~out), curve, rng)
+            learnt = posterior_of(timed.select(~out), curve, rng)
             for at in np.flatnonzero(out):
-                drawn = learnt.draw(walks.select(np.array([at])), draws, rng)[0]
+                drawn = learnt.draw(timed.select(np.array([at])), draws, rng)[0]
                 truth = float(walks.durations_s[at])
                 rows[at] = (
                     crps_s(drawn, truth),
                     covers(drawn, truth, 0.5),
                     covers(drawn, truth, 0.9),
                 )
-        scores[MIXED if isinstance(curve, StartingAndStopping) else curve.name] = rows
+        scores[method] = rows
     ours = scores[MIXED][:, 0]
     found = []
     for name, rows in scores.items():

@@ -6,7 +6,7 @@ suitability again, with other options or for part of the walks.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -90,6 +90,14 @@ class WalkDatabase:
             tuple(self.sources[i] for i in at),
             tuple(self.kinds[i] for i in at),
             None if self.resting is None else self.resting[at],
+        )
+
+    def without(self, names: Iterable[str]) -> "WalkDatabase":
+        """Return the same walks without some of the dependencies."""
+        left_out = set(names)
+        kept = [at for at, name in enumerate(self.names) if name not in left_out]
+        return replace(
+            self, names=tuple(self.names[at] for at in kept), vectors=self.vectors[:, kept]
         )
 
     def walked_by(self, persons: Iterable[str]) -> npt.NDArray[np.bool_]:

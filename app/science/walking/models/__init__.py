@@ -13,15 +13,19 @@ from app.science.walking.models.sampling import HEADROOM, MixtureSampler, densit
 from app.science.walking.models.steering_models import ProbabilisticModel, SteeringModel
 from app.science.walking.models.travel_time_model import (
     MIXED,
+    WITHOUT,
     TravelTimeModel,
     baseline_models,
+    model_without_further,
     timed_walks_of,
     travel_time_model,
+    without_further,
 )
 
 __all__ = [
     "HEADROOM",
     "MIXED",
+    "WITHOUT",
     "FitOptions",
     "FittedWalking",
     "MixtureSampler",
@@ -38,10 +42,12 @@ __all__ = [
     "density_of",
     "fitted",
     "iqr",
+    "model_without_further",
     "person_folds",
     "predictor_for",
     "restored",
     "space_of",
     "timed_walks_of",
     "travel_time_model",
+    "without_further",
 ]

@@ -11,7 +11,7 @@ The same class holds the baselines, which predict times but no agents.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from app.science.walking.records import (
     PlannedPath,
     Scaling,
     WalkingError,
+    further_of,
     scaling_of,
 )
 from app.science.walking.travel_times import (
@@ -37,6 +38,8 @@ from app.science.walking.travel_times import (
 )
 
 MIXED = "mixed"
+WITHOUT = f"{MIXED} without "
+"""What P_mixed is called without the further dependencies, before their names."""
 _WIDEST_TURN = PAPER_PARAMETERS[2].high
 
 
@@ -139,6 +142,28 @@ def travel_time_model(
 def baseline_models(database: WalkDatabase, rng: np.random.Generator) -> list[TravelTimeModel]:
     """Learn constant speed, a line and a log-log line from the walks of a database."""
     return [travel_time_model(database, rng, curve) for curve in BASELINES]
+
+
+def without_further(database: WalkDatabase) -> tuple[str, WalkDatabase] | None:
+    """Return a database without its further dependencies, and what P_mixed is called on it.
+
+    Predictions that this model makes as well are not improved by those dependencies. None if the
+    database has only those of the paper.
+    """
+    further = further_of(database.names)
+    if not further:
+        return None
+    return f"{WITHOUT}{', '.join(further)}", database.without(further)
+
+
+def model_without_further(
+    database: WalkDatabase, rng: np.random.Generator
+) -> list[TravelTimeModel]:
+    """Learn P_mixed without the further dependencies, for comparison; empty if there are none."""
+    plain = without_further(database)
+    if plain is None:
+        return []
+    return [replace(travel_time_model(plain[1], rng), name=plain[0])]
 
 
 def timed_walks_of(database: WalkDatabase) -> tuple[TimedWalks, Scaling | None]:

@@ -113,6 +113,7 @@ def _movements(track: Track, rules: SegmentationRules) -> list[Walk]:
     for first, last in _moving(times_s, places, rules):
         # The slow samples before and after it are its start and its goal.
         begin, end = max(0, first - 1), min(len(times_s) - 1, last + 1)
+        others, changing = _others(track, times_s[begin], times_s[end])
         walks.append(
             Walk(
                 times_s=times_s[begin : end + 1] - times_s[begin],
@@ -123,9 +124,34 @@ def _movements(track: Track, rules: SegmentationRules) -> list[Walk]:
                 stature_m=track.stature_m,
                 begins_still=first > 0,
                 ends_still=last < len(times_s) - 1,
+                scene=track.scene,
+                others=others,
+                changing=changing,
             )
         )
     return walks
+
+
+def _others(
+    track: Track, from_s: float, to_s: float
+) -> tuple[dict[str, float], dict[str, tuple[float, float]]]:
+    """Return the further numbers that are the same during a part of a track, and those that change.
+
+    Samples at which a number is not known say nothing: the value at the others counts.
+    """
+    others: dict[str, float] = {}
+    changing: dict[str, tuple[float, float]] = {}
+    within = (track.times_s >= from_s) & (track.times_s <= to_s)
+    for name, values in track.others.items():
+        known = values[within & np.isfinite(values)]
+        if not len(known):
+            continue
+        low, high = float(known.min()), float(known.max())
+        if low == high:
+            others[name] = low
+        else:
+            changing[name] = (low, high)
+    return others, changing
 
 
 def _moving(

@@ -26,7 +26,7 @@ from app.science.walking.records import (
     PlannedWalk,
     Planner,
     Walk,
-    WalkingError,
+    check_name,
     check_stature,
 )
 from app.science.walking.scene import by_length, turning_per_m
@@ -67,26 +67,27 @@ def dependencies_of(
         others: any further numbers by name, such as a load in kilograms.
 
     Raises:
-        WalkingError: one of `others` has one of the three names, or the stature is impossible.
+        WalkingError: a name of `others` is not valid (`check_name`), or the stature is impossible.
     """
     check_stature(stature_m)
     own = {LENGTH: path.length_m, TURNING: turning_per_m(path.points_m)}
     if stature_m is not None:
         own[STATURE] = stature_m
-    clash = [name for name in others if name in (LENGTH, TURNING, STATURE)]
-    if clash:
-        raise WalkingError(f"{', '.join(clash)} is computed or given already: choose other names.")
+    for name in others:
+        check_name(name)
     return own | dict(others)
 
 
 def planned_walk(walk: Walk, planner: Planner, others: Mapping[str, float] = NONE) -> PlannedWalk:
     """Plan the path between a walk's own start and goal, and make a database entry of both.
 
+    Its dependencies are the paper's, the walk's own further numbers, and `others`.
+
     Raises:
         SceneError: the planner finds no path.
     """
     path = planner.plan(walk.start_m, walk.goal_m)
-    return PlannedWalk(walk, path, dependencies_of(path, walk.stature_m, others))
+    return PlannedWalk(walk, path, dependencies_of(path, walk.stature_m, {**walk.others, **others}))
 
 
 def entry_of(
@@ -108,7 +109,7 @@ def entry_of(
     path = own_path(walk)
     if share <= LONGER and not _is_aside(path.points_m, entry.path):
         return entry
-    dependencies = dependencies_of(path, walk.stature_m, others)
+    dependencies = dependencies_of(path, walk.stature_m, {**walk.others, **others})
     return PlannedWalk(walk, path, dependencies, is_own_path=True)
 
 

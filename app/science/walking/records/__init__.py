@@ -4,6 +4,16 @@ Every instance is valid; invalid arguments raise `WalkingError`. Metres, seconds
 """
 
 from app.science.walking.records.dependencies import Scaling, dependency_vectors, scaling_of
+from app.science.walking.records.further import (
+    MOST_FURTHER,
+    NAME_PATTERN,
+    check_name,
+    check_names,
+    check_varies,
+    further_of,
+    is_name,
+    known_for,
+)
 from app.science.walking.records.model import (
     LENGTH,
     STATURE,
@@ -38,6 +48,8 @@ from app.science.walking.records.protocols import (
 
 __all__ = [
     "LENGTH",
+    "MOST_FURTHER",
+    "NAME_PATTERN",
     "PAPER_GRID",
     "PAPER_PARAMETERS",
     "STATURE",
@@ -60,8 +72,14 @@ __all__ = [
     "Walk",
     "WalkingError",
     "arc_of",
+    "check_name",
+    "check_names",
     "check_stature",
+    "check_varies",
     "dependency_vectors",
+    "further_of",
+    "is_name",
+    "known_for",
     "reference_of",
     "regular_grid",
     "scaling_of",

@@ -39,10 +39,12 @@ class Track:
         source: origin of the data, such as a file's name.
         kind: human or synthetic.
         stature_m: the person's height, None if unknown.
+        scene: where it was walked, by the name of the scene; None if that is not said.
+        others: further numbers by name, (N,) at each sample; NaN where one is not known.
 
     Raises:
-        WalkingError: there are fewer than two points, positions are not finite, or times do not
-            increase.
+        WalkingError: there are fewer than two points, positions are not finite, times do not
+            increase, or there is not one further number for each sample.
     """
 
     times_s: FloatArray
@@ -51,11 +53,19 @@ class Track:
     source: str
     kind: Kind = "human"
     stature_m: float | None = None
+    scene: str | None = None
+    others: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Validate the track."""
-        _check_course(self.times_s, self.xy_m, f"The track of {self.subject!r} ({self.source})")
+        what = f"The track of {self.subject!r} ({self.source})"
+        _check_course(self.times_s, self.xy_m, what)
         check_stature(self.stature_m)
+        for name, values in self.others.items():
+            if values.shape != self.times_s.shape:
+                raise WalkingError(
+                    f"{what} has {name} of shape {values.shape}: give {self.times_s.shape}."
+                )
 
     @property
     def rate_hz(self) -> float:
@@ -74,6 +84,10 @@ class Walk:
         begins_still, ends_still: whether the person stood before and after. If a recording begins
             or ends during the walk, its agent starts at speed or does not brake.
         note: information for the reader, such as the name of the scene's path.
+        scene: the same as that of its track.
+        others: further numbers by name: those that are known and the same during the whole walk.
+        changing: further numbers that change during the walk, each with its smallest and largest
+            value; no path has them before it is walked, so they are not in `others`.
     """
 
     times_s: FloatArray
@@ -85,6 +99,9 @@ class Walk:
     begins_still: bool = True
     ends_still: bool = True
     note: str = ""
+    scene: str | None = None
+    others: Mapping[str, float] = field(default_factory=dict)
+    changing: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Validate the walk."""

@@ -1,5 +1,7 @@
 """Tests that tracks are cut into walks where the person stands still."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
@@ -78,3 +80,21 @@ def test_invalid_rules_are_rejected() -> None:
     """A negative threshold is rejected by name."""
     with pytest.raises(WalkingError, match="still_m_s"):
         SegmentationRules(still_m_s=-0.1)
+
+
+def test_a_walk_has_the_numbers_that_stay_the_same_during_it() -> None:
+    """A load that is changed while the person stands is a number of each walk; a gaze is not."""
+    track = _walked((2.0, 0.0), (4.0, 3.0), (5.0, 0.0), (4.0, -3.0), (2.0, 0.0))
+    half = track.times_s < 8.0
+    load_kg = np.where(half, 8.0, 0.0)
+    load_kg[track.times_s < 4.0] = np.nan
+    gaze = np.where((track.times_s > 4.0) & half, 1.0, 0.0)
+    known = np.full(len(half), np.nan)
+    there, back = walks_of(
+        replace(track, scene="hall", others={"load_kg": load_kg, "gaze": gaze, "mood": known})
+    )
+    assert (there.others, there.changing) == ({"load_kg": 8.0}, {"gaze": (0.0, 1.0)})
+    assert (back.others, back.changing) == ({"load_kg": 0.0, "gaze": 0.0}, {})
+    assert there.scene == back.scene == "hall"
+    with pytest.raises(WalkingError, match=r"has load_kg of shape \(2,\): give"):
+        replace(track, others={"load_kg": np.zeros(2)})
