@@ -52,6 +52,7 @@ class TrackReading:
         statures_m: stature by subject.
         kind: whether people or a program walked.
         numbers: the further numbers to read, which other columns may hold; None for all of them.
+        scenes: whether a column `scene` is read.
     """
 
     rate_hz: float | None = None
@@ -59,6 +60,7 @@ class TrackReading:
     statures_m: Mapping[str, float] = field(default_factory=dict)
     kind: Kind = "human"
     numbers: tuple[str, ...] | None = ()
+    scenes: bool = True
 
 
 @dataclass(frozen=True)
@@ -191,7 +193,8 @@ def _layout(lines: list[str], reading: TrackReading) -> _Layout:
         )
     found = _named(cells, separator, first, rate_hz, reading)
     taken = (found.person, found.time, found.x, found.y)
-    return replace(found, about=walk_columns(names, taken, reading.numbers))
+    about = walk_columns(names, taken, reading.numbers, scenes=reading.scenes)
+    return replace(found, about=about)
 
 
 def _named(

@@ -78,7 +78,11 @@ class WalkColumns:
 
 
 def walk_columns(
-    names: Sequence[str], taken: Sequence[int], wanted: Sequence[str] | None
+    names: Sequence[str],
+    taken: Sequence[int],
+    wanted: Sequence[str] | None,
+    *,
+    scenes: bool = True,
 ) -> WalkColumns:
     """Choose the columns about walks of a header.
 
@@ -86,8 +90,10 @@ def walk_columns(
         names: the names of all columns, as they are written.
         taken: indices of the columns of person, time and place.
         wanted: the further numbers that are read; None for all columns that are numbers.
+        scenes: whether a column of scenes is read.
     """
-    scene = next((at for at, name in enumerate(names) if name.lower() == SCENE), -1)
+    found = (at for at, name in enumerate(names) if scenes and name.lower() == SCENE)
+    scene = next(found, -1)
     free = [(name, at) for at, name in enumerate(names) if at not in (*taken, scene)]
     valid = tuple(name for name, _ in free if is_name(name))
     if wanted is None:

@@ -12,7 +12,6 @@ from app.adapters.walks.track_table import UNITS_M, TrackReading, TrackTable, re
 from app.cli.walk.people import People
 from app.cli.walk.scenes import NamedScenes
 from app.science.rig import RigError
-from app.science.walking.planning import OPEN_FLOOR
 from app.science.walking.recording import (
     LeftOut,
     Recorded,
@@ -24,7 +23,7 @@ from app.science.walking.recording import (
     track_of_motion,
     walks_of,
 )
-from app.science.walking.records import PlannedWalk, Track, WalkingError, known_for
+from app.science.walking.records import OPEN_FLOOR, PlannedWalk, Track, WalkingError, known_for
 
 MOST_BYTES = 500_000_000
 _NAMES_SHOWN = 6

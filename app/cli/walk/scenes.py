@@ -5,7 +5,8 @@ from pathlib import Path
 from app.adapters.walks import load_scene, load_shipped, shipped_scenes
 from app.errors import missing_file
 from app.protocol import ConfigError
-from app.science.walking.planning import OPEN_FLOOR, WalkedScenes
+from app.science.walking.planning import WalkedScenes
+from app.science.walking.records import OPEN_FLOOR
 from app.science.walking.scene import Scene
 
 

@@ -109,6 +109,8 @@ async def post_tracks(
 ) -> WalkSetView:
     """Store a table of tracks (id, time, x, y), which is the body of the request.
 
+    A column `scene` says in which scene each row was walked; other columns of numbers, such as
+    `load_kg`, are numbers on which a model may depend, if they stay the same during a walk.
     `stature` may be given once for each person, as `A=1.78`, in metres.
     """
     origin = TracksOrigin(
@@ -116,6 +118,7 @@ async def post_tracks(
         rate_hz=rate_hz,
         metres_per_unit=metres_per_unit,
         statures_m=_statures(stature or []),
+        reads_columns=True,
     )
     return await add_table(context, caller, Table(title, kind, origin), request.stream())
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from app.adapters.walks.model_file import write_model
 from app.features.movement.walking.progress import RECORD_BYTES, FitFolder
-from app.features.movement.walking.reading import planned_walks
+from app.features.movement.walking.reading import planned_walks, walk_name
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
 from app.features.movement.walking.summaries import model_summary
 from app.science.walking.following import SteeringFollower
@@ -35,6 +35,8 @@ from app.science.walking.records import (
     ParameterGrid,
     PlannedWalk,
     WalkingError,
+    check_varies,
+    known_for,
     regular_grid,
 )
 
@@ -46,19 +48,36 @@ def fit(store: Store, order: FitOrder, folder: Path) -> Json:
     """Fit a model, with its files in `folder`, and return a `ModelSummary`; raise Cannot."""
     files = FitFolder(folder)
     files.write_stage("walks", 0, 0)
-    entries = planned_walks(store, order.source, order.scene)
+    read = planned_walks(store, order.source, order.scene)
+    entries, left_out = _with_numbers(read, order.depends_on)
     _check_people(entries)
     follower = SteeringFollower()
     maker = MapMaker(regular_grid(PAPER_PARAMETERS, order.steps), follower)
     try:
-        database = _database(files, entries, maker)
+        database = _database(files, entries, maker, order.depends_on)
         files.write_stage("blending", len(entries), maker.grid.size)
         options = FitOptions(order.seed, order.k, order.entries, READINGS[order.reading])
         found = fitted(database, options)
         digest = write_model(files.model, found, follower.rules)
-        return model_summary(found, digest)
+        return model_summary(found, digest) | {"left_out_walks": left_out}
     except WalkingError as error:
         raise Cannot(str(error)) from None
+
+
+def _with_numbers(
+    read: list[PlannedWalk], names: tuple[str, ...]
+) -> tuple[list[PlannedWalk], list[Json]]:
+    """Return the walks that have all further numbers, and the others with their reasons."""
+    try:
+        without = known_for(read, names)
+        entries = [one for at, one in enumerate(read) if at not in without]
+        check_varies(entries, names)
+    except WalkingError as error:
+        raise Cannot(str(error)) from None
+    return entries, [
+        {"walk": walk_name(at + 1, read[at].walk), "reason": reason}
+        for at, reason in without.items()
+    ]
 
 
 def _check_people(entries: list[PlannedWalk]) -> None:
@@ -71,7 +90,9 @@ def _check_people(entries: list[PlannedWalk]) -> None:
         )
 
 
-def _database(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> WalkDatabase:
+def _database(
+    files: FitFolder, entries: list[PlannedWalk], maker: MapMaker, further: tuple[str, ...]
+) -> WalkDatabase:
     grid = maker.grid
     files.write_stage("maps", len(entries), grid.size)
     made = _kept_maps(files, entries, maker)
@@ -84,7 +105,7 @@ def _database(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> 
             made.append(one)
     usual = (LENGTH, TURNING, STATURE)
     names = [name for name in usual if all(name in one.dependencies for one in entries)]
-    return database_of(entries, made, names)
+    return database_of(entries, made, (*names, *further))
 
 
 def _kept_maps(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> list[DeviationMap]:

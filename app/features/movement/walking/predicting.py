@@ -18,7 +18,7 @@ from app.science.walking.following import SteeringFollower
 from app.science.walking.models import FittedWalking, Prediction, Predictor
 from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.recording import dependencies_of
-from app.science.walking.records import STATURE, PlannedPath, WalkingError
+from app.science.walking.records import STATURE, PlannedPath, WalkingError, further_of
 from app.science.walking.scene import Scene, outlines_of
 
 Json = dict[str, Any]
@@ -87,7 +87,7 @@ def predict(store: Store, content_hash: str, question: Question) -> Json:
     fit, follower = opened(store, content_hash)
     path = path_of(question)
     try:
-        dependencies, assumed = _dependencies(fit, path, question.stature_m)
+        dependencies, assumed = _dependencies(fit, path, question)
         rng = np.random.default_rng(question.seed)
         usual = Predictor(fit.usual, follower)
         drawn = usual.predict(path, dependencies, question.count, rng)
@@ -124,17 +124,30 @@ def predict(store: Store, content_hash: str, question: Question) -> Json:
 
 
 def _dependencies(
-    fit: FittedWalking, path: PlannedPath, stature_m: float | None
+    fit: FittedWalking, path: PlannedPath, question: Question
 ) -> tuple[dict[str, float], list[str]]:
     """Return the dependencies of the walk, and the names of those that were assumed.
 
-    An unknown stature is assumed to be the mean of the model's people.
+    A stature or a further number that is not known is assumed to be the mean of the model's walks.
+
+    Raises:
+        Cannot: the model does not depend on one of the further numbers.
     """
-    base, assumed = fit.database, []
-    if stature_m is None and STATURE in base.names:
-        stature_m = float(base.vectors[:, base.names.index(STATURE)].mean())
-        assumed.append(STATURE)
-    found = dependencies_of(path, stature_m)
+    base, given = fit.database, dict(question.others)
+    further = further_of(base.names)
+    for name in given:
+        if name not in further:
+            raise Cannot(
+                f"this model does not depend on {name!r}",
+                f"Besides its path and stature it knows {', '.join(further) or 'nothing'}.",
+            )
+    if question.stature_m is not None:
+        given[STATURE] = question.stature_m
+    assumed = [name for name in (STATURE, *further) if name in base.names and name not in given]
+    for name in assumed:
+        given[name] = float(base.vectors[:, base.names.index(name)].mean())
+    stature_m = given.pop(STATURE, None)
+    found = dependencies_of(path, stature_m, given)
     return {name: found[name] for name in base.names}, assumed
 
 

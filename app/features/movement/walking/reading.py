@@ -4,6 +4,7 @@ import io
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
 from sqlalchemy import make_url
 from sqlalchemy.orm import Session
 
@@ -23,7 +24,7 @@ from app.features.movement.walking.sources import (
 )
 from app.protocol import ConfigError
 from app.science.rig import RigError
-from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.planning import WalkedScenes
 from app.science.walking.recording import (
     LeftOut,
     Recorded,
@@ -34,11 +35,12 @@ from app.science.walking.recording import (
     track_of_motion,
     walks_of,
 )
-from app.science.walking.records import PlannedWalk, Track, Walk, WalkingError
-from app.science.walking.scene import Scene, open_scene
+from app.science.walking.records import OPEN_FLOOR, PlannedWalk, Track, Walk, WalkingError
+from app.science.walking.scene import Scene
 from app.science.walking.synthetic import POPULATIONS, Sample, laboratory_scenes, synthetic_walks
 
 MAX_WALKS = 5000
+_REMEDY = "Choose the scene in which these walks took place, or none."
 
 
 def content_of(store: Store, content_hash: str) -> bytes:
@@ -63,13 +65,26 @@ def scene_of(text: str) -> Scene:
         raise Cannot(f"the scene cannot be read: {error}", "Correct the scene's file.") from None
 
 
+def scenes_of(source: TrackSource, usual: str | None) -> WalkedScenes:
+    """Return the scenes of a table; `usual` is the text of the scene of tracks that name none.
+
+    Raises:
+        Cannot: a scene cannot be read.
+    """
+    scenes = {key: scene_of(text) for key, text in source.scenes}
+    if usual is None:
+        return WalkedScenes(scenes)
+    scene = scene_of(usual)
+    return WalkedScenes({**scenes, scene.name: scene}, scene.name)
+
+
 def planned_walks(store: Store, source: WalkSource, scene: str | None) -> list[PlannedWalk]:
     """Return all walks of a source with the paths planned for them; raise Cannot."""
     try:
         if isinstance(source, PopulationSource):
             return _synthetic(source)
         tracks = tracks_of(content_of(store, source.content_hash), source)
-        return planned(walks_in(tracks), None if scene is None else scene_of(scene))
+        return planned(walks_in(tracks), scenes_of(source, scene))
     except WalkingError as error:
         raise Cannot(str(error)) from None
 
@@ -82,24 +97,48 @@ def tracks_of(data: bytes, source: TrackSource) -> list[Track]:
 def table_of(data: bytes, source: TrackSource) -> TrackTable:
     """Return the tracks of a table with what was assumed; raise Cannot with the line."""
     reading = TrackReading(
-        rate_hz=source.rate_hz, metres_per_unit=source.metres_per_unit, kind=source.kind
+        rate_hz=source.rate_hz,
+        metres_per_unit=source.metres_per_unit,
+        kind=source.kind,
+        numbers=None if source.reads_columns else (),
+        scenes=source.reads_columns,
     )
     try:
         found = read_track_table(data, name=source.name, reading=reading)
         subjects, titles = dict(source.subjects), dict(source.titles)
-        statures_m = dict(source.statures_m)
+        statures_m, walked_in = dict(source.statures_m), dict(source.walked_in)
+        numbers = dict(source.numbers)
+        _check_scenes(found, source)
         tracks = []
         for track in found.tracks:
             subject = subjects.get(track.subject, track.subject)
             title = titles.get(track.subject, track.source)
             stature_m = statures_m.get(subject)
-            tracks.append(replace(track, subject=subject, source=title, stature_m=stature_m))
-        return TrackTable(tracks, found.assumed)
+            scene = walked_in.get(track.subject, track.scene)
+            others = {
+                name: np.full(len(track.times_s), number)
+                for name, number in numbers.get(track.subject, ())
+            }
+            own = replace(track, subject=subject, source=title, stature_m=stature_m)
+            tracks.append(replace(own, scene=scene, others={**track.others, **others}))
+        return replace(found, tracks=tracks)
     except CaptureError as error:
         at = f"line {error.line}: " if error.line else ""
         raise Cannot(f"{source.name}, {at}{error.reason}", "Correct the table.") from None
     except WalkingError as error:
         raise Cannot(f"{source.name}: {error}", "Correct the table.") from None
+
+
+def _check_scenes(table: TrackTable, source: TrackSource) -> None:
+    """Raise Cannot if a table names a scene that there is not."""
+    known = [key for key, _ in source.scenes]
+    for scene, line in table.scenes.items():
+        if scene not in known and scene != OPEN_FLOOR:
+            raise Cannot(
+                f"{source.name}, line {line}: there is no scene {scene!r}; scenes are"
+                f" {', '.join(known) or 'none'}, and {OPEN_FLOOR!r}",
+                "Correct the column scene, or add the scene's file first.",
+            )
 
 
 def walks_in(tracks: Sequence[Track]) -> list[Walk]:
@@ -116,31 +155,27 @@ def walks_in(tracks: Sequence[Track]) -> list[Walk]:
     return walks
 
 
-def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
-    """Find the path of each walk, on an open floor if there is no scene; raise Cannot."""
-    planner = None if scene is None else LazyThetaPlanner(scene)
+def planned(walks: Sequence[Walk], scenes: WalkedScenes) -> list[PlannedWalk]:
+    """Find the path of each walk in its scene; raise Cannot."""
     entries, recorded = [], Recorded()
     for number, walk in enumerate(walks, start=1):
+        name = walk_name(number, walk)
         if objection := recorded.objection(walk, f"walk {number}, of {walk.subject}"):
-            raise Cannot(
-                f"walk {number}, of {walk.subject} ({walk.source}): {objection}",
-                "Correct the table, or leave the walk out.",
-            )
-        used = planner or LazyThetaPlanner(open_scene(walk.start_m, walk.goal_m))
+            raise Cannot(f"{name}: {objection}", "Correct the table, or leave the walk out.")
         try:
-            entry = entry_of(walk, used)
+            entry = entry_of(walk, scenes.planner_of(walk))
         except WalkingError as error:
-            raise Cannot(
-                f"walk {number}, of {walk.subject} ({walk.source}): {error}",
-                "Choose the scene in which these walks took place, or none.",
-            ) from None
+            raise Cannot(f"{name}: {error}", _REMEDY) from None
         if isinstance(entry, LeftOut):
-            raise Cannot(
-                f"walk {number}, of {walk.subject} ({walk.source}): {entry.reason}",
-                "Choose the scene in which these walks took place, or none.",
-            )
+            raise Cannot(f"{name}: {entry.reason}", _REMEDY)
         entries.append(entry)
     return entries
+
+
+def walk_name(number: int, walk: Walk) -> str:
+    """Return what a walk is called in messages: its number in its set, its person, its source."""
+    where = "" if walk.scene is None else f", in {walk.scene}"
+    return f"walk {number}, of {walk.subject} ({walk.source}{where})"
 
 
 def table_of_captures(store: Store, captures: Sequence[tuple[str, CapturedWalk]]) -> bytes:

@@ -64,6 +64,13 @@ def scene_view(db: Session, key: str) -> SceneView:
     return _view(load_scene(row.text), row.text, row)
 
 
+def scene_texts(db: Session) -> tuple[tuple[str, str], ...]:
+    """Return key and text of every scene: those of the product, and the lab's own."""
+    own = db.execute(select(WalkingScene.key, WalkingScene.text).order_by(WalkingScene.key))
+    shipped = ((key, text) for key, (text, _) in _shipped().items())
+    return (*shipped, *((row.key, row.text) for row in own))
+
+
 def add_scene(db: Session, context: AppContext, caller: Caller, request: NewScene) -> SceneView:
     """Store a scene file; raise InvalidConfig with every problem, Conflict if the key is in use."""
     try:
@@ -93,7 +100,8 @@ def add_scene(db: Session, context: AppContext, caller: Caller, request: NewScen
 def remove_scene(db: Session, context: AppContext, caller: Caller, key: str) -> None:
     """Delete a scene of the lab; raise NotFound, or Conflict for one of the product.
 
-    Models that were fitted in the scene do not need it any more.
+    Models that were fitted in the scene do not need it any more. Sets of walks that name it keep
+    the name: to fit a model to them, a scene of this key has to be added again.
     """
     if key in _shipped():
         raise Conflict(

@@ -3,9 +3,17 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, WithJsonSchema
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    WithJsonSchema,
+)
 
 from app.plain_titles import PlainTitle
+from app.science.walking.records import MOST_FURTHER, NAME_PATTERN, check_name
 
 Kind = Literal["human", "synthetic"]
 State = Literal["fitting", "stopped", "ready", "failed"]
@@ -14,8 +22,20 @@ Title = PlainTitle
 Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80)]
 SceneKey = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")]
 RecordId = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{32}$")]
+WalkedIn = Annotated[str, StringConstraints(pattern=r"^([a-z0-9][a-z0-9-]{0,63}|open floor)$")]
+"""Where somebody walked: the key of a scene, or the open floor."""
 Stature = Annotated[float, Field(ge=0.5, le=2.6, allow_inf_nan=False)]
 Seed = Annotated[int, Field(ge=0, le=2**31 - 1)]
+
+
+def _allowed(name: str) -> str:
+    check_name(name)
+    return name
+
+
+NumberName = Annotated[str, StringConstraints(pattern=NAME_PATTERN), AfterValidator(_allowed)]
+"""What a further number of walks may be called, such as `load_kg`."""
+Number = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
 
 
 def _numbers(count: int) -> WithJsonSchema:
@@ -29,6 +49,7 @@ Bounds = Annotated[tuple[float, float, float, float], _numbers(4)]
 Quartiles = Annotated[tuple[float, float, float], _numbers(3)]
 MAX_SCENE_CHARACTERS = 200_000
 MAX_CAPTURES = 200
+MAX_NUMBERS = 10
 
 
 class _Asked(BaseModel):
@@ -99,12 +120,29 @@ class CensusView(BaseModel):
     total_m: float
 
 
+class WalksInScene(BaseModel):
+    """How many walks of a set are in a scene; `key` is null for walks that name none."""
+
+    key: str | None
+    walks: int
+
+
+class NumberView(BaseModel):
+    """A further number of walks, such as a load: how many walks of how many people have it."""
+
+    walks: int
+    people: int
+    range: Range
+
+
 class WalksSummary(BaseModel):
     """The summary of a set of walks.
 
-    `cut_by_recording`: walks during which a recording begins or ends. `missing_dependencies`: those
-    that only some walks have, so that no model can depend on them. `assumed`: what a table did not
-    say and was assumed. `doubts`: why its unit or its rate is doubtful.
+    `cut_by_recording`: walks during which a recording begins or ends. `missing_dependencies`:
+    stature, if only some walks have it, so that no model can depend on it. `assumed`: what a table
+    did not say and was assumed. `doubts`: why its unit or its rate is doubtful. `numbers`: further
+    numbers that a model can depend on, by name; `changing_numbers` change during every walk, so
+    that none can; `spoilt_numbers` says which columns contain text among their numbers.
     """
 
     walks: int
@@ -117,6 +155,10 @@ class WalksSummary(BaseModel):
     census: CensusView
     assumed: list[str] = []
     doubts: list[str] = []
+    scenes: list[WalksInScene] = []
+    numbers: dict[str, NumberView] = {}
+    changing_numbers: list[str] = []
+    spoilt_numbers: list[str] = []
 
 
 class PopulationView(BaseModel):
@@ -143,13 +185,18 @@ class PopulationOrigin(_Asked):
 class CapturedPerson(_Asked):
     """A capture with the person who walks in it.
 
-    `body`: which tracked body is followed, if the capture has several.
+    `body`: which tracked body is followed, if the capture has several. `scene`: where it was
+    walked; null for the scene of the model. `numbers`: further numbers of these walks by name.
     """
 
     capture_id: RecordId
     subject: Name
     stature_m: Stature | None = None
     body: Name | None = None
+    scene: WalkedIn | None = None
+    numbers: Annotated[dict[NumberName, Number], Field(max_length=MAX_NUMBERS)] = Field(
+        default_factory=dict
+    )
 
 
 class CapturesOrigin(_Asked):
@@ -160,13 +207,18 @@ class CapturesOrigin(_Asked):
 
 
 class TracksOrigin(BaseModel):
-    """Walks cut from an uploaded table of tracks."""
+    """Walks cut from an uploaded table of tracks.
+
+    `reads_columns`: whether its columns of scenes and further numbers count; not in tables that
+    were stored before they did.
+    """
 
     kind: Literal["tracks"] = "tracks"
     file_name: str
     rate_hz: float | None = None
     metres_per_unit: float | None = None
     statures_m: dict[str, float] = Field(default_factory=dict)
+    reads_columns: bool = False
 
 
 class NewWalkSet(_Asked):
@@ -194,7 +246,8 @@ class FitChoice(_Asked):
 
     `steps`: values of each steering parameter; a map has their cube as its size. `k`: neighbours.
     `entries`: of the blending space, blends included. `reading`: how deviations are converted to
-    suitability; "chosen" selects it by predicting people who were left out.
+    suitability; "chosen" selects it by predicting people who were left out. `depends_on`: further
+    numbers of the set on which the model depends, besides length, turning and stature.
     """
 
     steps: Annotated[int, Field(ge=3, le=12)] = 10
@@ -202,10 +255,13 @@ class FitChoice(_Asked):
     entries: Annotated[int, Field(ge=10, le=20_000)] = 5000
     reading: Literal["chosen", "paper", "time-aware"] = "chosen"
     seed: Seed = 1
+    depends_on: Annotated[list[NumberName], Field(max_length=MOST_FURTHER)] = Field(
+        default_factory=list
+    )
 
 
 class NewModel(_Asked):
-    """A model to fit; `scene` is the one in which tracks were walked, null for the open floor."""
+    """A model to fit; `scene` is that of walks that name none, null for the open floor."""
 
     title: Title
     walk_set_id: RecordId

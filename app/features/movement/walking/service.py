@@ -21,6 +21,11 @@ from app.features.movement.walking.schemas import FitChoice, Kind, NewModel, Sta
 from app.features.movement.walking.set_sources import source_of_set
 from app.features.movement.walking.sources import FitOrder
 from app.features.movement.walking.walk_sets import walk_set_by_id, walk_set_view
+from app.features.movement.walking.walked_with import (
+    check_numbers,
+    check_unchanged,
+    walked_scenes,
+)
 from app.models import WalkingModelRow, new_id
 from app.platform.access import Caller
 from app.platform.context import AppContext
@@ -66,6 +71,8 @@ def order_model(db: Session, context: AppContext, caller: Caller, request: NewMo
     Raises NotFound, Conflict, or Busy if too many models are being fitted.
     """
     walks = walk_set_by_id(db, request.walk_set_id)
+    view = walk_set_view(walks)
+    check_numbers(view, request.options.depends_on)
     scene = None if request.scene is None else scene_view(db, request.scene)
     if scene is not None and walks.origin["kind"] == "population":
         raise Conflict(
@@ -79,7 +86,11 @@ def order_model(db: Session, context: AppContext, caller: Caller, request: NewMo
         kind=walks.kind,
         state="fitting",
         walk_set_id=walks.id,
-        walk_set={"title": walks.title, "origin": walks.origin["kind"]},
+        walk_set={
+            "title": walks.title,
+            "origin": walks.origin["kind"],
+            "scenes": [one.model_dump(mode="json") for one in walked_scenes(db, view)],
+        },
         scene=None
         if scene is None
         else {"key": scene.key, "title": scene.title, "content_hash": scene.content_hash},
@@ -94,7 +105,7 @@ def order_model(db: Session, context: AppContext, caller: Caller, request: NewMo
 def order_of(db: Session, model_id: str) -> FitOrder:
     """Return a model's order for the worker process.
 
-    Raises NotFound, or Conflict if the scene has changed since the order.
+    Raises NotFound, or Conflict if a scene has changed since the order, or was deleted.
     """
     row = MODELS.by_id(db, model_id)
     if row.walk_set_id is None:
@@ -109,6 +120,7 @@ def order_of(db: Session, model_id: str) -> FitOrder:
             )
         scene = scene_text(db, row.scene["key"])
     options = FitChoice.model_validate(row.options)
+    check_unchanged(db, FittedOn(id=row.walk_set_id, **row.walk_set).scenes)
     return FitOrder(
         source=source_of_set(db, walk_set_view(walk_set_by_id(db, row.walk_set_id))),
         scene=scene,
@@ -117,6 +129,7 @@ def order_of(db: Session, model_id: str) -> FitOrder:
         k=options.k,
         entries=options.entries,
         reading=options.reading,
+        depends_on=tuple(options.depends_on),
     )
 
 

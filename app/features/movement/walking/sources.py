@@ -40,6 +40,10 @@ class TrackSource:
         statures_m: Pairs of subject and stature.
         subjects: Pairs of the table's id and the person, for several tracks of one person.
         titles: Pairs of the table's id and the recording that the track comes from.
+        scenes: Pairs of key and text of the scenes in which it was walked, or may have been.
+        walked_in: Pairs of the table's id and the key of its scene.
+        numbers: Pairs of the table's id and its further numbers, as pairs of name and number.
+        reads_columns: Whether the table's columns of scenes and further numbers are read.
     """
 
     name: str
@@ -50,6 +54,10 @@ class TrackSource:
     statures_m: tuple[tuple[str, float], ...] = ()
     subjects: tuple[tuple[str, str], ...] = ()
     titles: tuple[tuple[str, str], ...] = ()
+    scenes: tuple[tuple[str, str], ...] = ()
+    walked_in: tuple[tuple[str, str], ...] = ()
+    numbers: tuple[tuple[str, tuple[tuple[str, float], ...]], ...] = ()
+    reads_columns: bool = False
 
 
 @dataclass(frozen=True)
@@ -92,11 +100,12 @@ class FitOrder:
 
     Attributes:
         source: The walks.
-        scene: Text of the scene in which tracks were walked, None for the open floor.
+        scene: Text of the scene of tracks that name none, None for the open floor.
         steps: Values of each steering parameter.
         seed, k, entries: As in `FitOptions`.
         reading: How deviations are converted to suitability; "chosen" selects it by left-out
             people.
+        depends_on: Names of the further numbers on which the model depends.
     """
 
     source: WalkSource
@@ -106,6 +115,7 @@ class FitOrder:
     k: int
     entries: int
     reading: Literal["chosen", "paper", "time-aware"]
+    depends_on: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -119,6 +129,7 @@ class Question:
         stature_m: The walker's stature, None for the mean of the model's people.
         count, seed: Draws of P_prob.
         shown: How many of the draws are followed along the path.
+        others: Pairs of name and number of the model's further dependencies that are known.
     """
 
     scene: str | None
@@ -128,6 +139,7 @@ class Question:
     count: int
     seed: int
     shown: int
+    others: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True)

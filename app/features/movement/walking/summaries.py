@@ -1,5 +1,6 @@
 """Summarise a set of walks and a fitted model; runs in the worker process."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -15,15 +16,16 @@ from app.science.walking.evaluation import (
 )
 from app.science.walking.models import FittedWalking
 from app.science.walking.recording import census
-from app.science.walking.records import PlannedWalk
+from app.science.walking.records import LENGTH, STATURE, TURNING, PlannedWalk, Walk
 
 Json = dict[str, Any]
+PAPERS = {LENGTH, TURNING, STATURE}
 
 
 def walks_summary(entries: Sequence[PlannedWalk]) -> Json:
     """Return a `WalksSummary` of walks."""
     walks = [entry.walk for entry in entries]
-    names = sorted({name for entry in entries for name in entry.dependencies})
+    names = sorted({name for entry in entries for name in entry.dependencies} & PAPERS)
     everywhere = [name for name in names if all(name in entry.dependencies for entry in entries)]
     ranges = {name: _range([entry.dependencies[name] for entry in entries]) for name in everywhere}
     return {
@@ -35,7 +37,30 @@ def walks_summary(entries: Sequence[PlannedWalk]) -> Json:
         "dependencies": ranges,
         "missing_dependencies": [name for name in names if name not in everywhere],
         "census": asdict(census([entry.path.length_m for entry in entries])),
+        "scenes": [
+            {"key": key, "walks": count}
+            for key, count in Counter(walk.scene for walk in walks).most_common()
+        ],
+        "numbers": _numbers(walks),
+        "changing_numbers": sorted(
+            {name for walk in walks for name in walk.changing}
+            - {name for walk in walks for name in walk.others}
+        ),
     }
+
+
+def _numbers(walks: Sequence[Walk]) -> Json:
+    """Return, for each further number, the walks that have it, and its range over them."""
+    names = dict.fromkeys(name for walk in walks for name in walk.others)
+    found: Json = {}
+    for name in names:
+        known = [walk for walk in walks if name in walk.others]
+        found[name] = {
+            "walks": len(known),
+            "people": len({walk.subject for walk in known}),
+            "range": _range([walk.others[name] for walk in known]),
+        }
+    return found
 
 
 def model_summary(fit: FittedWalking, digest: str) -> Json:

@@ -23,6 +23,7 @@ from app.features.movement.walking.schemas import (
     WalksSummary,
 )
 from app.features.movement.walking.set_sources import (
+    all_scenes,
     captured_walks,
     captures_source,
     population_source,
@@ -79,7 +80,8 @@ async def add_table(
 ) -> WalkSetView:
     """Store a table of tracks; raise InvalidInput with the line that cannot be parsed."""
     async with uploaded(context, body, None) as (file,):
-        source = tracks_source(request.origin, request.kind, file.hash)
+        scenes = await run_sync(all_scenes, context)
+        source = tracks_source(request.origin, request.kind, file.hash, scenes)
         found = await context.part(PredictionQueue).run(inspected_tracks, source, file.path)
         row = _row(context, caller, request.title, request.kind, request.origin, file.hash)
         row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
@@ -121,9 +123,11 @@ def remove_walk_set(db: Session, context: AppContext, caller: Caller, set_id: st
 async def _add_captured(
     context: AppContext, caller: Caller, title: str, origin: CapturesOrigin
 ) -> WalkSetView:
+    scenes = await run_sync(all_scenes, context)
+    source = captures_source(origin, "", scenes)
     captures = await run_sync(captured_walks, context, origin)
     found = await context.part(PredictionQueue).run(
-        captured_table, store_of(context), captures, captures_source(origin, "")
+        captured_table, store_of(context), captures, source
     )
     content_hash = hashlib.sha256(found.table).hexdigest()
     row = _row(context, caller, title, "human", origin, content_hash)

@@ -78,11 +78,15 @@ def slice_of(store: Store, content_hash: str, question: SliceQuestion) -> dict[s
 
 
 def _tracks_summary(data: bytes, source: TrackSource) -> dict[str, Any]:
-    from app.features.movement.walking.reading import planned, table_of, walks_in
+    from app.features.movement.walking.reading import planned, scenes_of, table_of, walks_in
     from app.features.movement.walking.summaries import walks_summary
     from app.science.walking.recording import doubts_about
 
     table = table_of(data, source)
     walks = walks_in(table.tracks)
-    notices = {"assumed": list(table.assumed), "doubts": doubts_about(walks)}
-    return walks_summary(planned(walks, None)) | notices
+    notices = {
+        "assumed": list(table.assumed),
+        "doubts": doubts_about(walks),
+        "spoilt_numbers": list(table.spoilt),
+    }
+    return walks_summary(planned(walks, scenes_of(source, None))) | notices

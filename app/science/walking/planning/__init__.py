@@ -6,10 +6,9 @@ straight line is free. The compiler is loaded with the first call.
 
 from app.science.walking.planning.grid_planner import LazyThetaPlanner
 from app.science.walking.planning.shortest import sees
-from app.science.walking.planning.walked_scenes import OPEN_FLOOR, WalkedScenes
+from app.science.walking.planning.walked_scenes import WalkedScenes
 
 __all__ = [
-    "OPEN_FLOOR",
     "LazyThetaPlanner",
     "WalkedScenes",
     "sees",

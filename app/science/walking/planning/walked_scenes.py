@@ -6,14 +6,10 @@ The path of a walk is planned in its own scene, so that a model learns from all 
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from typing import Final
 
 from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.records import Planner, Walk, WalkingError
+from app.science.walking.records import OPEN_FLOOR, Planner, Walk, WalkingError
 from app.science.walking.scene import Scene, open_scene
-
-OPEN_FLOOR: Final = "open floor"
-"""What names the floor without obstacles; no scene's key, which has no spaces."""
 
 
 class WalkedScenes:

@@ -5,6 +5,7 @@ Every instance is valid; invalid arguments raise `WalkingError`. Metres, seconds
 
 from app.science.walking.records.dependencies import Scaling, dependency_vectors, scaling_of
 from app.science.walking.records.further import (
+    LEAST_KNOWN,
     MOST_FURTHER,
     NAME_PATTERN,
     check_name,
@@ -16,6 +17,7 @@ from app.science.walking.records.further import (
 )
 from app.science.walking.records.model import (
     LENGTH,
+    OPEN_FLOOR,
     STATURE,
     TURNING,
     Kind,
@@ -47,9 +49,11 @@ from app.science.walking.records.protocols import (
 )
 
 __all__ = [
+    "LEAST_KNOWN",
     "LENGTH",
     "MOST_FURTHER",
     "NAME_PATTERN",
+    "OPEN_FLOOR",
     "PAPER_GRID",
     "PAPER_PARAMETERS",
     "STATURE",

@@ -22,6 +22,8 @@ Kind = Literal["human", "synthetic"]
 """Whether a person or a program walked; stored with all data derived from a walk."""
 LENGTH, TURNING, STATURE = "length_m", "turning_per_m", "stature_m"
 """Names of the paper's three dependencies, in metres, radians per metre and metres."""
+OPEN_FLOOR = "open floor"
+"""What a walk's scene is called on the floor without obstacles; no key, which has no space."""
 
 
 class WalkingError(ValueError):

@@ -30,10 +30,15 @@ def store_content(url: str, data: bytes, folder: Path) -> str:
     return content_hash
 
 
+def captured_walk(content_hash: str) -> CapturedWalk:
+    """Return a stored BVH file as a capture of a walk."""
+    return CapturedWalk("walk.bvh", content_hash, None, None, None, None, None, 10**7)
+
+
 def test_a_walk_is_extracted_from_a_capture(database_url: str, tmp_path: Path) -> None:
     """A walk extracted from a captured skeleton has its person, speed and stature."""
     content = store_content(database_url, walk_bvh(150), tmp_path)
-    walk = CapturedWalk("walk.bvh", content, None, None, None, None, None, 10**7)
+    walk = captured_walk(content)
     source = TrackSource("captures", "", subjects=(("c0", "Ann"),), statures_m=(("Ann", 1.7),))
     found = captured_table(Store(database_url), (("c0", walk),), source)
     assert found.table.startswith(b"id,time_s,x_m,y_m\nc0,0.0,")
@@ -47,7 +52,7 @@ def test_a_walk_is_extracted_from_a_capture(database_url: str, tmp_path: Path) -
 @pytest.mark.one_engine
 def test_a_deleted_capture_is_reported(database_url: str) -> None:
     """Extracting a walk from a capture that is no longer stored is an error."""
-    walk = CapturedWalk("walk.bvh", "0" * 64, None, None, None, None, None, 10**7)
+    walk = captured_walk("0" * 64)
     with pytest.raises(Cannot, match="no longer stored"):
         captured_table(Store(database_url), (("c0", walk),), TrackSource("captures", ""))
 

@@ -142,5 +142,6 @@ def _question(context: AppContext, request: PathAsked) -> Question:
     points = tuple((float(x), float(y)) for x, y in request.points_m)
     if not isinstance(request, PredictionAsked):
         return Question(scene, points, request.planned, None, 1, 0, 0)
-    drawn = (request.stature_m, request.count, request.seed, request.shown)
+    others = tuple(sorted(request.others.items()))
+    drawn = (request.stature_m, request.count, request.seed, request.shown, others)
     return Question(scene, points, request.planned, *drawn)

@@ -9,6 +9,8 @@ from app.features.movement.walking.schemas import (
     CensusView,
     FitChoice,
     Kind,
+    Number,
+    NumberName,
     Point,
     Range,
     SceneKey,
@@ -18,9 +20,10 @@ from app.features.movement.walking.schemas import (
     Stature,
 )
 from app.science.walking.evaluation import reason_for_no_interval
+from app.science.walking.records import MOST_FURTHER
 
 Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
-Value = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
+Value = Number
 
 
 class ProgressView(BaseModel):
@@ -81,9 +84,10 @@ class PredictedView(BaseModel):
     """How well travel times of people who were left out are predicted, by one method.
 
     `method`: mixed, the model of this product, or a baseline that learnt from the same walks:
-    constant speed, line, log-log. `crps_less_s`: by how much the error of mixed is smaller, and
-    the 95 % interval of that over people; its ends are null if `no_interval` says why there is
-    none, as in `walk evaluate`. Coverages are shares: .5 and .9 if intervals are right.
+    constant speed, line, log-log, and mixed without the further numbers. `crps_less_s`: by how
+    much the error of mixed is smaller, and the 95 % interval of that over people; its ends are null
+    if `no_interval` says why there is none, as in `walk evaluate`. Coverages are shares: .5 and .9
+    if intervals are right.
     """
 
     method: str
@@ -104,11 +108,18 @@ class PredictedView(BaseModel):
         return self
 
 
+class LeftOutWalk(BaseModel):
+    """A walk that a model does not use, and why."""
+
+    walk: str
+    reason: str
+
+
 class ModelSummary(BaseModel):
     """The summary of a fitted model; `model_hash` is the hash in its file.
 
     `predicted` is null for models fitted before it was computed, and empty for fewer than three
-    people.
+    people. `left_out_walks`: walks that lack one of the numbers on which the model depends.
     """
 
     model_hash: str
@@ -125,21 +136,37 @@ class ModelSummary(BaseModel):
     left_out: LeftOutFigures
     predicted: list[PredictedView] | None = None
     census: CensusView
+    left_out_walks: list[LeftOutWalk] = []
+
+
+class WalkedScene(BaseModel):
+    """A scene in which walks of a model took place, and the hash of its file at the order.
+
+    `key` is null for walks that name none, which were planned in the model's scene; for these and
+    for the open floor `content_hash` is null.
+    """
+
+    key: str | None
+    title: str
+    content_hash: str | None
+    walks: int
 
 
 class FittedOn(BaseModel):
     """The set of walks that a model was fitted to, with its title at the time of the order.
 
-    `id` is null if the set was deleted.
+    `id` is null if the set was deleted. `scenes` is empty for models ordered before walks named
+    theirs.
     """
 
     id: str | None
     title: str
     origin: Literal["population", "captures", "tracks"]
+    scenes: list[WalkedScene] = []
 
 
 class SceneNamed(BaseModel):
-    """The scene in which the walks were planned, and the hash of its file then."""
+    """The scene in which walks that name none were planned, and the hash of its file then."""
 
     key: str
     title: str
@@ -202,11 +229,16 @@ class PathView(BaseModel):
 class PredictionAsked(PathAsked):
     """A path for which durations are predicted.
 
-    `stature_m` null: the mean of the model's people. `count` walks are drawn with `seed`, and the
-    same seed gives the same walks; `shown` of them are followed along the path.
+    `stature_m` null: the mean of the model's people. `others`: the further numbers on which the
+    model depends, by name; the mean of its walks for one that is not given. `count` walks are drawn
+    with `seed`, and the same seed gives the same walks; `shown` of them are followed along the
+    path.
     """
 
     stature_m: Stature | None = None
+    others: Annotated[dict[NumberName, Number], Field(max_length=MOST_FURTHER)] = Field(
+        default_factory=dict
+    )
     count: Annotated[int, Field(ge=20, le=5000)] = 500
     seed: Seed = 1
     shown: Annotated[int, Field(ge=0, le=60)] = 20
