@@ -5,6 +5,7 @@ import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { scenesQuery } from "./queries";
 import classes from "./Walking.module.css";
+import { OPEN_FLOOR } from "./walkedScenes";
 
 interface NameFieldProps {
   readonly value: string;
@@ -28,16 +29,20 @@ interface SceneFieldProps {
   readonly label: string;
   readonly description?: string;
   readonly placeholder: string;
+  /** Whether the floor without obstacles is a choice of its own, beside none. */
+  readonly withOpenFloor?: boolean;
   readonly value: string | null;
   readonly onChange: (key: string | null) => void;
 }
 
-export function SceneField(props: SceneFieldProps): JSX.Element {
-  const scenes = useQuery(scenesQuery);
+export function SceneField({ withOpenFloor = false, ...props }: SceneFieldProps): JSX.Element {
+  const { t } = useTexts();
+  const scenes = useQuery(scenesQuery).data ?? [];
+  const open = withOpenFloor ? [{ value: OPEN_FLOOR, label: t("walking.model.scene.open") }] : [];
   return (
     <Select
       {...props}
-      data={(scenes.data ?? []).map((one) => ({ value: one.key, label: one.title }))}
+      data={[...open, ...scenes.map((one) => ({ value: one.key, label: one.title }))]}
       clearable
     />
   );

@@ -4,6 +4,7 @@ import { Button, Title } from "@mantine/core";
 import { type Model, type Range, walking } from "@shared/api/walking";
 import { dateTime, decimals, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useMemo } from "react";
 import { Link, useLocation } from "wouter";
@@ -12,11 +13,13 @@ import { type Key, useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import { ScrollBox } from "../ui/tables";
-import { useParameter } from "./dependencyNames";
+import { useDependencyLabel, useParameter } from "./dependencyNames";
+import { namedNumber } from "./furtherNumbers";
 import { FitProgress, ModelActions } from "./ModelTable";
 import { modelQuery } from "./queries";
 import classes from "./Walking.module.css";
 import { Synthetic } from "./WalkingTable";
+import { inModelsScene, useWalkedScenes } from "./walkedScenes";
 import { censusFigure } from "./walkingFigures";
 
 export function ModelPage({ id }: { readonly id: string }): JSX.Element {
@@ -72,6 +75,15 @@ function ModelDetails({ model }: { readonly model: Model }): JSX.Element {
   );
 }
 
+/** How the method begins that leaves the model's further numbers out. */
+const WITHOUT = "mixed without ";
+const wordsOf = (method: string): string =>
+  method
+    .slice(WITHOUT.length)
+    .split(", ")
+    .map((name) => namedNumber(name).words)
+    .join(", ");
+
 type Summary = NonNullable<Model["summary"]>;
 
 interface PartProps {
@@ -82,22 +94,27 @@ interface PartProps {
 function About({ model }: { readonly model: Model }): JSX.Element {
   const { t, language } = useTexts();
   const n = (value: number) => number(value, language);
+  const label = useDependencyLabel();
+  const inScenes = useWalkedScenes();
   const range = (one: Range) => t("walking.range", { from: n(one.low), to: n(one.high) });
   const { summary, options, scene } = model;
-  const facts: (readonly [Key, string])[] = [
-    ["walking.fact.on", model.walk_set.title],
+  const unnamed =
+    scene?.title ??
+    t(
+      model.walk_set.origin === "population"
+        ? "walking.model.scene.own"
+        : "walking.model.scene.open",
+    );
+  const walked = model.walk_set.scenes ?? [];
+  const facts: (readonly [string, string])[] = [
+    [t("walking.fact.on"), model.walk_set.title],
     [
-      "walking.model.scene",
-      scene?.title ??
-        t(
-          model.walk_set.origin === "population"
-            ? "walking.model.scene.own"
-            : "walking.model.scene.open",
-        ),
+      t("walking.model.scene"),
+      walked.some(({ key }) => key !== null) ? inScenes(inModelsScene(walked, scene)) : unnamed,
     ],
-    ["walking.fact.by", `${nameOf(model.by)}, ${dateTime(model.at, language)}`],
+    [t("walking.fact.by"), `${nameOf(model.by)}, ${dateTime(model.at, language)}`],
     [
-      "walking.fact.options",
+      t("walking.fact.options"),
       t("walking.fact.options.are", {
         steps: options.steps ?? 0,
         k: options.k ?? 0,
@@ -110,21 +127,21 @@ function About({ model }: { readonly model: Model }): JSX.Element {
     const { reading } = summary;
     facts.push(
       [
-        "walking.fact.walks",
+        t("walking.fact.walks"),
         t("walking.walksOf", { walks: n(summary.walks), people: n(summary.people) }),
       ],
       ...Object.entries(summary.dependencies).map(
-        ([name, one]) => [`walking.fact.${name}` as Key, range(one)] as const,
+        ([name, one]) => [label(name), range(one)] as const,
       ),
       [
-        "walking.fact.reading",
+        t("walking.fact.reading"),
         t("walking.fact.reading.is", {
           normalisation: reading.normalisation,
           power: n(reading.power),
           tau: reading.time_constant_s === null ? "–" : `${n(reading.time_constant_s)} s`,
         }),
       ],
-      ["walking.fact.hash", summary.model_hash.slice(0, 16)],
+      [t("walking.fact.hash"), summary.model_hash.slice(0, 16)],
     );
   }
   return (
@@ -133,10 +150,11 @@ function About({ model }: { readonly model: Model }): JSX.Element {
         {t("walking.fact")}
       </Title>
       <dl className={classes.facts}>
-        {facts.map(([key, value]) => (
-          <Fact key={key} name={t(key)} value={value} />
+        {facts.map(([name, value]) => (
+          <Fact key={name} name={name} value={value} />
         ))}
       </dl>
+      <LeftOutWalks walks={summary?.left_out_walks ?? []} />
     </section>
   );
 }
@@ -148,6 +166,28 @@ const Fact = ({ name, value }: { readonly name: string; readonly value: string }
   </>
 );
 
+/** The walks that the model does not use, each with its reason. */
+function LeftOutWalks({
+  walks,
+}: {
+  readonly walks: NonNullable<Summary["left_out_walks"]>;
+}): JSX.Element | null {
+  const { t } = useTexts();
+  if (walks.length === 0) return null;
+  return (
+    <details>
+      <summary className={classes.soft}>{t("walking.without", { count: walks.length })}</summary>
+      <ul className={classes.soft}>
+        {walks.map(({ walk, reason }) => (
+          <li key={walk}>
+            {walk}: {reason}
+          </li>
+        ))}
+      </ul>
+    </details>
+  );
+}
+
 function PredictedDurations({ summary }: { readonly summary: Summary }): JSX.Element | null {
   const { t, language } = useTexts();
   const { predicted } = summary;
@@ -156,6 +196,13 @@ function PredictedDurations({ summary }: { readonly summary: Summary }): JSX.Ele
   const given = noInterval === null || noInterval === undefined;
   const s = (value: number) => decimals(value, language, 3);
   const percent = (share: number) => decimals(100 * share, language, 0);
+  const method = (name: string) =>
+    name.startsWith(WITHOUT)
+      ? t("walking.predicted.without", { what: wordsOf(name) })
+      : t(`walking.predicted.${name}` as Key);
+  const needless = predicted.find(
+    (one) => one.method.startsWith(WITHOUT) && one.crps_less_s[0] <= 0,
+  );
   return (
     <section className={classes.card}>
       <Title order={2} size="h3">
@@ -180,7 +227,7 @@ function PredictedDurations({ summary }: { readonly summary: Summary }): JSX.Ele
                 const [less, from, to] = one.crps_less_s;
                 return (
                   <tr key={one.method}>
-                    <td>{t(`walking.predicted.${one.method}` as Key)}</td>
+                    <td>{method(one.method)}</td>
                     <td className="numbers">{s(one.crps_s)}</td>
                     <td className="numbers">
                       {one.method === "mixed"
@@ -201,6 +248,11 @@ function PredictedDurations({ summary }: { readonly summary: Summary }): JSX.Ele
               })}
             </tbody>
           </table>
+          {needless !== undefined && (
+            <Notice tone="warn">
+              {t("walking.predicted.needless", { what: wordsOf(needless.method) })}
+            </Notice>
+          )}
           {!given && (
             <p className={classes.soft}>{t("walking.predicted.noInterval", { why: noInterval })}</p>
           )}

@@ -1,5 +1,5 @@
 /** Start to fit a model: on which walks, in which scene, and with which settings. */
-import { Button, Group, Modal, Select, Stack } from "@mantine/core";
+import { Button, Group, Modal, MultiSelect, Select, Stack } from "@mantine/core";
 import { type WalkSet, type NewModel as Wish, walking } from "@shared/api/walking";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
@@ -7,6 +7,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useFormSubmit } from "../ui/useSingleSubmit";
 import { NameField, SceneField, WholeNumbers } from "./FormFields";
+import { numberLabel } from "./furtherNumbers";
 import { modelsQuery } from "./queries";
 
 interface NewModelProps {
@@ -16,7 +17,11 @@ interface NewModelProps {
 }
 
 type Options = Required<NonNullable<Wish["options"]>>;
-const USUAL: Options = { steps: 10, k: 100, entries: 5000, reading: "chosen", seed: 1 };
+const USUAL: Options = {
+  ...{ steps: 10, k: 100, entries: 5000, reading: "chosen", seed: 1 },
+  depends_on: [],
+};
+const MOST_DEPENDENCIES = 3;
 const READINGS = ["chosen", "paper", "time-aware"] as const;
 const NUMBERS = [
   { name: "steps", min: 3, max: 12 },
@@ -71,7 +76,11 @@ function Form({
           label={t("walking.sets.one")}
           data={sets.map((one) => ({ value: one.id, label: one.title }))}
           value={setId}
-          onChange={(value) => value !== null && setSetId(value)}
+          onChange={(value) => {
+            if (value === null) return;
+            setSetId(value);
+            setOptions({ ...options, depends_on: [] });
+          }}
           allowDeselect={false}
         />
         <NameField value={title} onChange={setTitle} />
@@ -82,6 +91,13 @@ function Form({
             placeholder={t("walking.model.scene.open")}
             value={scene}
             onChange={setScene}
+          />
+        )}
+        {chosen !== undefined && (
+          <DependsOn
+            set={chosen}
+            names={options.depends_on}
+            onChange={(names) => setOptions({ ...options, depends_on: names })}
           />
         )}
         <Select
@@ -108,5 +124,42 @@ function Form({
         </Group>
       </Stack>
     </form>
+  );
+}
+
+interface DependsOnProps {
+  readonly set: WalkSet;
+  readonly names: readonly string[];
+  readonly onChange: (names: string[]) => void;
+}
+
+/** Choose the further numbers on which the model depends; nothing if the walks have none. */
+function DependsOn({ set, names, onChange }: DependsOnProps): JSX.Element | null {
+  const { t } = useTexts();
+  const { numbers, walks } = set.summary;
+  const known = Object.entries(numbers ?? {});
+  if (known.length === 0) return null;
+  const data = known.map(([name, one]) => {
+    const label = numberLabel(name);
+    if (2 * one.walks < walks) {
+      const some = t("walking.numbers.some", { some: one.walks, all: walks });
+      return { value: name, label: `${label} ${some}`, disabled: true };
+    }
+    if (one.range.low === one.range.high) {
+      return { value: name, label: t("walking.numbers.same", { name: label }), disabled: true };
+    }
+    return { value: name, label };
+  });
+  return (
+    <MultiSelect
+      label={t("walking.numbers.dependsOn")}
+      description={t("walking.numbers.dependsOn.hint")}
+      placeholder={names.length === 0 ? t("walking.numbers.dependsOn.none") : ""}
+      data={data}
+      value={[...names]}
+      onChange={onChange}
+      maxValues={MOST_DEPENDENCIES}
+      clearable
+    />
   );
 }

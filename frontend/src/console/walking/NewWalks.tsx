@@ -1,36 +1,26 @@
 /** Add walks: a table of tracks, paths cut from captures, or synthetic walkers. */
 import {
-  Button,
   FileInput,
-  Group,
   Modal,
-  MultiSelect,
   NumberInput,
   SegmentedControl,
   Select,
   Stack,
   Switch,
   Textarea,
-  TextInput,
 } from "@mantine/core";
 import { walking } from "@shared/api/walking";
-import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { capturesQuery } from "../captures/queries";
-import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useSingleSubmit } from "../ui/useSingleSubmit";
+import { CapturedWalks } from "./CapturedWalks";
 import { NameField, SceneField, WholeNumbers } from "./FormFields";
-import { populationsQuery, walkSetsQuery } from "./queries";
+import { populationsQuery } from "./queries";
+import { Send, type SourceProps, useSending } from "./SendWalks";
 import classes from "./Walking.module.css";
 
 const SOURCES = ["tracks", "captures", "population"] as const;
 type Source = (typeof SOURCES)[number];
-
-interface SourceProps {
-  readonly title: string;
-  readonly onDone: () => void;
-}
 
 const FORMS: Readonly<Record<Source, (props: SourceProps) => JSX.Element>> = {
   tracks: Tracks,
@@ -74,38 +64,6 @@ export function NewWalks({ opened, onClose }: NewWalksProps): JSX.Element {
         />
       </Stack>
     </Modal>
-  );
-}
-
-/** Send a form, and reload the list if it was accepted. */
-function useSending(send: () => Promise<unknown>, onDone: () => void) {
-  const queries = useQueryClient();
-  return useMutation({
-    mutationFn: send,
-    onSuccess: async () => {
-      await queries.invalidateQueries({ queryKey: walkSetsQuery.queryKey });
-      onDone();
-    },
-  });
-}
-
-interface SendProps {
-  readonly sending: ReturnType<typeof useSending>;
-  readonly ready: boolean;
-}
-
-function Send({ sending, ready }: SendProps): JSX.Element {
-  const { t } = useTexts();
-  const submit = useSingleSubmit(sending);
-  return (
-    <>
-      {sending.isError && <Failure error={sending.error} />}
-      <Group justify="flex-end">
-        <Button loading={sending.isPending} disabled={!ready} onClick={() => submit()}>
-          {t("walking.sets.add")}
-        </Button>
-      </Group>
-    </>
   );
 }
 
@@ -221,75 +179,3 @@ const COUNTS = [
   { name: "repetitions", min: 1, max: 10 },
   { name: "seed", min: 0, max: 2 ** 31 - 1 },
 ] as const;
-
-interface Person {
-  readonly subject: string;
-  readonly stature: number | null;
-}
-
-const NOBODY: Person = { subject: "", stature: null };
-
-/** Cut walks from stored captures: which ones, and who walks in each. */
-function CapturedWalks({ title, onDone }: SourceProps): JSX.Element {
-  const { t } = useTexts();
-  const captures = useQuery(capturesQuery).data?.captures ?? [];
-  const [chosen, setChosen] = useState<readonly string[]>([]);
-  const [people, setPeople] = useState<Readonly<Record<string, Person>>>({});
-  const personOf = (id: string): Person => people[id] ?? NOBODY;
-  const set = (id: string, person: Person) => setPeople({ ...people, [id]: person });
-  const sending = useSending(
-    () =>
-      walking.addWalkSet({
-        title,
-        origin: {
-          kind: "captures",
-          captures: chosen.map((id) => ({
-            capture_id: id,
-            subject: personOf(id).subject.trim(),
-            stature_m: personOf(id).stature,
-          })),
-        },
-      }),
-    onDone,
-  );
-  const named = chosen.every((id) => personOf(id).subject.trim() !== "");
-  return (
-    <>
-      <MultiSelect
-        label={t("walking.captures")}
-        placeholder={t(captures.length === 0 ? "walking.captures.none" : "walking.captures.choose")}
-        data={captures.map((one) => ({ value: one.id, label: one.title }))}
-        value={[...chosen]}
-        onChange={setChosen}
-        searchable
-        maxValues={200}
-      />
-      {chosen.map((id) => {
-        const name = captures.find((one) => one.id === id)?.title ?? id;
-        return (
-          <div key={id} className={classes.choices}>
-            <TextInput
-              label={t("walking.subject.of", { name })}
-              required
-              maxLength={80}
-              value={personOf(id).subject}
-              onChange={(event) => set(id, { ...personOf(id), subject: event.currentTarget.value })}
-            />
-            <NumberInput
-              label={t("walking.stature")}
-              min={0.5}
-              max={2.6}
-              step={0.01}
-              decimalScale={2}
-              value={personOf(id).stature ?? ""}
-              onChange={(value) =>
-                set(id, { ...personOf(id), stature: typeof value === "number" ? value : null })
-              }
-            />
-          </div>
-        );
-      })}
-      <Send sending={sending} ready={title !== "" && chosen.length > 0 && named} />
-    </>
-  );
-}

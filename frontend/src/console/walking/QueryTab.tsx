@@ -1,22 +1,26 @@
 /** Query a model: draw a path in a scene, and see the durations of walks along it. */
 import { NumberInput, Select } from "@mantine/core";
-import type { ModelListed, Prediction, SceneListed } from "@shared/api/walking";
+import type { ModelListed, Prediction, Range, SceneListed } from "@shared/api/walking";
+import { number } from "@shared/format";
 import { useQuery } from "@tanstack/react-query";
-import { type JSX, useReducer, useState } from "react";
+import { type JSX, useMemo, useReducer, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { DurationPanel } from "./DurationPanel";
 import { changedPath, isCompletePath, NO_PATH } from "./drawnPath";
+import { furtherOf, numberLabel } from "./furtherNumbers";
 import { NoModel } from "./NoModel";
 import { PathPanel } from "./PathPanel";
-import { modelsQuery, predictionQuery, sceneQuery, scenesQuery } from "./queries";
+import { modelQuery, modelsQuery, predictionQuery, sceneQuery, scenesQuery } from "./queries";
 import { SlicePanel } from "./SlicePanel";
 import classes from "./Walking.module.css";
 
 export const SEED = 1;
 const COUNT = 500;
 const SHOWN = 24;
+/** The largest further number that the server takes. */
+const FARTHEST = 1e6;
 
 export function QueryTab(): JSX.Element {
   const scenes = useQuery(scenesQuery);
@@ -40,9 +44,13 @@ interface ModelQueryProps {
 
 interface Settings {
   readonly stature: number | null;
+  /** Further numbers by name, those that are known. */
+  readonly others: Readonly<Record<string, number>>;
   readonly count: number;
   readonly seed: number;
 }
+
+const USUAL: Settings = { stature: null, others: {}, count: COUNT, seed: SEED };
 
 function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
   const { t } = useTexts();
@@ -50,8 +58,9 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
   const [sceneKey, setSceneKey] = useState(scenes.find(({ shipped }) => shipped)?.key ?? "");
   const [path, change] = useReducer(changedPath, NO_PATH);
   const [planned, setPlanned] = useState(true);
-  const [settings, set] = useState<Settings>({ stature: null, count: COUNT, seed: SEED });
+  const [settings, set] = useState<Settings>(USUAL);
   const model = models.find(({ id }) => id === modelId) ?? models[0];
+  const dependencies = useDependencies(model);
   const scene = useQuery({ ...sceneQuery(sceneKey), enabled: sceneKey !== "" });
   const query = useQuery({
     ...predictionQuery(model?.id ?? "", {
@@ -59,6 +68,9 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
       points_m: ends(path.points, planned).map(([x, y]) => [x, y]),
       planned,
       stature_m: settings.stature,
+      others: Object.fromEntries(
+        Object.entries(settings.others).filter(([name]) => dependencies.has(name)),
+      ),
       count: settings.count,
       seed: settings.seed,
       shown: SHOWN,
@@ -105,7 +117,7 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
             />
           )}
         </Loaded>
-        <SettingsRow settings={settings} onChange={set} />
+        <SettingsRow settings={settings} dependencies={dependencies} onChange={set} />
       </div>
       <div className={classes.column} aria-busy={query.isFetching}>
         <Answer
@@ -117,6 +129,23 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
       </div>
     </div>
   );
+}
+
+const NO_DEPENDENCIES: ReadonlyMap<string, Range> = new Map();
+
+/** The further numbers on which a model depends, with their ranges in its walks. */
+function useDependencies(model: ModelListed | undefined): ReadonlyMap<string, Range> {
+  const found = useQuery({ ...modelQuery(model?.id ?? ""), enabled: model !== undefined }).data;
+  return useMemo(() => {
+    const all = found?.summary?.dependencies;
+    if (all === undefined) return NO_DEPENDENCIES;
+    return new Map(
+      furtherOf(Object.keys(all)).flatMap((name) => {
+        const range = all[name];
+        return range === undefined ? [] : [[name, range] as const];
+      }),
+    );
+  }, [found]);
 }
 
 /** The ends of a path that the server plans; the points between them are not part of that query. */
@@ -152,11 +181,18 @@ function Answer({ model, prediction, error, busy }: AnswerProps): JSX.Element {
 
 interface SettingsRowProps {
   readonly settings: Settings;
+  readonly dependencies: ReadonlyMap<string, Range>;
   readonly onChange: (settings: Settings) => void;
 }
 
-function SettingsRow({ settings, onChange }: SettingsRowProps): JSX.Element {
-  const { t } = useTexts();
+function SettingsRow({ settings, dependencies, onChange }: SettingsRowProps): JSX.Element {
+  const { t, language } = useTexts();
+  const setOther = (which: string, value: number | string) => {
+    const { [which]: _, ...others } = settings.others;
+    const given = inRange(value, -FARTHEST, FARTHEST);
+    onChange({ ...settings, others: given === undefined ? others : { ...others, [which]: given } });
+  };
+  const n = (value: number) => number(value, language);
   return (
     <div className={classes.choices}>
       <NumberInput
@@ -169,6 +205,18 @@ function SettingsRow({ settings, onChange }: SettingsRowProps): JSX.Element {
         step={0.01}
         decimalScale={2}
       />
+      {[...dependencies].map(([name, range]) => (
+        <NumberInput
+          key={name}
+          label={numberLabel(name)}
+          description={t("walking.other.range", { from: n(range.low), to: n(range.high) })}
+          placeholder={t("walking.other.mean", { value: n(range.mean) })}
+          value={settings.others[name] ?? ""}
+          onChange={(value) => setOther(name, value)}
+          min={-FARTHEST}
+          max={FARTHEST}
+        />
+      ))}
       <NumberInput
         label={t("walking.count")}
         value={settings.count}

@@ -7,7 +7,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useMemo, useState } from "react";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
-import { useParameter } from "./dependencyNames";
+import { useDependencyWord, useParameter } from "./dependencyNames";
 import { sliceQuery } from "./queries";
 import classes from "./Walking.module.css";
 import { Synthetic } from "./WalkingTable";
@@ -21,8 +21,13 @@ interface SlicePanelProps {
 const FIRST = "angular";
 const MIDDLE = 1;
 
+/** Join words as in a sentence: `length, turning and stature`. */
+const listed = (words: readonly string[], language: string): string =>
+  new Intl.ListFormat(language, { type: "conjunction" }).format(words);
+
 export function SlicePanel({ modelId, prediction }: SlicePanelProps): JSX.Element {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
+  const word = useDependencyWord();
   const [held, setFixed] = useState(FIRST);
   const [value, setValue] = useState(MIDDLE);
   const { dependencies } = prediction;
@@ -35,7 +40,9 @@ export function SlicePanel({ modelId, prediction }: SlicePanelProps): JSX.Elemen
         </Title>
         {prediction.kinds.includes("synthetic") && <Synthetic />}
       </div>
-      <p className={classes.soft}>{t("walking.slice.lead")}</p>
+      <p className={classes.soft}>
+        {t("walking.slice.lead", { what: listed(Object.keys(dependencies).map(word), language) })}
+      </p>
       <Loaded query={query}>
         {(slice) => (
           <SliceView

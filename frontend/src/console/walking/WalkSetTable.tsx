@@ -1,15 +1,17 @@
 /** The list of sets of walks: who walked, how many walks, how far. */
 import { Table } from "@mantine/core";
-import { type WalkSet, walking } from "@shared/api/walking";
+import { type Range, type WalkSet, walking } from "@shared/api/walking";
 import { decimals, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { usePermissions } from "../permissions";
 import { DeleteButton } from "./DeleteButton";
+import { namedNumber } from "./furtherNumbers";
 import { walkSetsQuery } from "./queries";
 import classes from "./Walking.module.css";
 import { CreatedCell, Synthetic, WalkingTable } from "./WalkingTable";
+import { useWalkedScenes } from "./walkedScenes";
 
 const COLUMNS = ["walks", "origin", "lengths", "durations", "by"] as const;
 
@@ -41,6 +43,7 @@ function Row({ set }: { readonly set: WalkSet }): JSX.Element {
             people: number(people, language),
           })}
         </span>
+        <WalkedWith set={set} />
         {(set.summary.assumed ?? []).map((text) => (
           <span key={text} className={classes.sub}>
             {t("walking.set.assumed", { text })}
@@ -78,6 +81,46 @@ function Row({ set }: { readonly set: WalkSet }): JSX.Element {
         )}
       </Table.Td>
     </Table.Tr>
+  );
+}
+
+/** Where the walks were, and the numbers that a model may depend on. */
+function WalkedWith({ set }: { readonly set: WalkSet }): JSX.Element {
+  const { t, language } = useTexts();
+  const inScenes = useWalkedScenes();
+  const {
+    scenes,
+    numbers,
+    walks,
+    changing_numbers: changing,
+    spoilt_numbers: spoilt,
+  } = set.summary;
+  const n = (value: number) => number(value, language);
+  const range = (name: string, { low, high }: Range) => {
+    const { words, unit } = namedNumber(name);
+    const values = low === high ? n(low) : t("walking.range", { from: n(low), to: n(high) });
+    return [words, values, unit ?? []].flat().join(" ");
+  };
+  const known = Object.entries(numbers ?? {}).map(([name, one]) => {
+    const some = t("walking.numbers.some", { some: n(one.walks), all: n(walks) });
+    return one.walks < walks ? `${range(name, one.range)} ${some}` : range(name, one.range);
+  });
+  const named = (scenes ?? []).some(({ key }) => key !== null);
+  return (
+    <>
+      {named && <span className={classes.sub}>{inScenes(scenes ?? [])}</span>}
+      {known.length > 0 && <span className={classes.sub}>{known.join(" · ")}</span>}
+      {(changing ?? []).length > 0 && (
+        <span className={classes.sub}>
+          {t("walking.numbers.changing", { names: (changing ?? []).join(", ") })}
+        </span>
+      )}
+      {(spoilt ?? []).map((text) => (
+        <span key={text} className={classes.doubt}>
+          <Icon name="alert" size={14} /> {t("walking.numbers.spoilt", { text })}
+        </span>
+      ))}
+    </>
   );
 }
 

@@ -49,6 +49,8 @@ export const walkingModelEn = {
   "walking.fact.options.are":
     "{{steps}} values of each parameter, {{k}} neighbours, {{entries}} entries, seed {{seed}}",
   "walking.fact.walks": "Walks",
+  "walking.without_one": "{{count}} walk left out",
+  "walking.without_other": "{{count}} walks left out",
   "walking.fact.length_m": "Length (m)",
   "walking.fact.turning_per_m": "Turning (rad/m)",
   "walking.fact.stature_m": "Stature (m)",
@@ -81,6 +83,9 @@ export const walkingModelEn = {
   "walking.predicted.log-log": "log-log line",
   "walking.predicted.none":
     "Too few people to leave any out: with two, one is left to learn from. How well this model predicts others is not known.",
+  "walking.predicted.without": "mixed without {{what}}",
+  "walking.predicted.needless":
+    "People who were left out are predicted no better with {{what}} than without: a model without it serves these walks as well.",
   "walking.predicted.range": "{{value}} ({{from}} to {{to}})",
   "walking.predicted.noInterval": "No interval: {{why}}.",
   "walking.census": "How long the paths are",
@@ -138,6 +143,8 @@ export const walkingModelDe: Readonly<Record<keyof typeof walkingModelEn, string
   "walking.fact.options.are":
     "{{steps}} Werte jeder Steuergröße, {{k}} Nachbarn, {{entries}} Einträge, Startwert {{seed}}",
   "walking.fact.walks": "Gänge",
+  "walking.without_one": "{{count}} Gang ausgelassen",
+  "walking.without_other": "{{count}} Gänge ausgelassen",
   "walking.fact.length_m": "Länge (m)",
   "walking.fact.turning_per_m": "Drehung (rad/m)",
   "walking.fact.stature_m": "Körpergröße (m)",
@@ -170,6 +177,9 @@ export const walkingModelDe: Readonly<Record<keyof typeof walkingModelEn, string
   "walking.predicted.log-log": "Gerade, doppelt logarithmisch",
   "walking.predicted.none":
     "Zu wenige Personen, um jemanden auszulassen: Bei zweien bleibt eine zum Lernen. Wie gut dieses Modell andere vorhersagt, ist nicht bekannt.",
+  "walking.predicted.without": "mixed ohne {{what}}",
+  "walking.predicted.needless":
+    "Ausgelassene Personen werden mit {{what}} nicht besser vorhergesagt als ohne: Ein Modell ohne diese Angabe genügt für diese Gänge.",
   "walking.predicted.range": "{{value}} ({{from}} bis {{to}})",
   "walking.predicted.noInterval": "Kein Intervall (Wortlaut des Servers): {{why}}.",
   "walking.census": "Wie lang die Wege sind",

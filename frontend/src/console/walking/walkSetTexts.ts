@@ -12,9 +12,28 @@ export const walkSetEn = {
   "walking.model.file": "Model file",
   "walking.model.scene": "Planned in",
   "walking.model.scene.hint":
-    "Where the tracked people walked; paths are planned around the obstacles in it.",
+    "Where those walks took place that name no scene; paths are planned around its obstacles.",
   "walking.model.scene.open": "the open floor",
   "walking.model.scene.own": "the scenes they were made for",
+  "walking.scene.ofModel": "the model’s",
+  "walking.scenes.in": "{{count}} in {{scene}}",
+  "walking.scenes.open": "{{count}} on the open floor",
+  "walking.scenes.ofModel": "{{count}} in the model’s scene",
+  "walking.scenes.deleted": "{{key}} (deleted)",
+  "walking.numbers.some": "({{some}} of {{all}} walks)",
+  "walking.numbers.same": "{{name}}, the same for all walks",
+  "walking.numbers.changing": "Changes during every walk, so no model can depend on it: {{names}}.",
+  "walking.numbers.spoilt": "{{text}}. Correct it and add the walks again to use the column.",
+  "walking.numbers.dependsOn": "Depends on",
+  "walking.numbers.dependsOn.hint":
+    "Besides length, turning and stature; up to three. Walks without the number are left out.",
+  "walking.numbers.dependsOn.none": "nothing else",
+  "walking.numbers.names": "Further numbers",
+  "walking.numbers.names.hint":
+    "What else a model may depend on, with the unit in its name: load_kg, or gaze_on_display as 1 or 0.",
+  "walking.numbers.wrong":
+    "“{{name}}” is not valid: letters, digits and underscores, a letter first; not length, turning or stature.",
+  "walking.numbers.unknown": "not known",
   "walking.sets": "Walks",
   "walking.sets.one": "Walks",
   "walking.sets.lead": "Tracks on the floor, split where people stand still.",
@@ -31,7 +50,7 @@ export const walkSetEn = {
   "walking.way.captures": "Captures",
   "walking.way.population": "Synthetic walkers",
   "walking.way.tracks.hint":
-    "CSV with the columns id, time_s (or frame), x, y; one row per person and moment.",
+    "CSV with the columns id, time_s (or frame), x, y; one row per person and moment. A column scene says where (a scene’s key, or open floor); numbers such as load_kg may be what a model depends on.",
   "walking.way.captures.hint":
     "The centre of mass, hips or belt tracker of stored captures. The walks are kept when a capture is deleted.",
   "walking.way.population.hint":
@@ -51,7 +70,7 @@ export const walkSetEn = {
   "walking.captures": "Captures",
   "walking.captures.choose": "Choose captures",
   "walking.captures.none": "No captures yet",
-  "walking.subject.of": "Who walks in {{name}}",
+  "walking.subject": "Who walks",
   "walking.reading": "Reading of the maps",
   "walking.reading.chosen": "Chosen by cross-validation",
   "walking.reading.paper": "As in the paper",
@@ -87,9 +106,30 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
   "walking.model.file": "Modelldatei",
   "walking.model.scene": "Geplant in",
   "walking.model.scene.hint":
-    "Wo die aufgezeichneten Personen gegangen sind; Wege werden um die Hindernisse herum geplant.",
+    "Wo die Gänge stattfanden, die keine Szene nennen; Wege werden um ihre Hindernisse herum geplant.",
   "walking.model.scene.open": "der freien Fläche",
   "walking.model.scene.own": "den Szenen, für die sie gemacht wurden",
+  "walking.scene.ofModel": "die des Modells",
+  "walking.scenes.in": "{{count}} in {{scene}}",
+  "walking.scenes.open": "{{count}} auf der freien Fläche",
+  "walking.scenes.ofModel": "{{count}} in der Szene des Modells",
+  "walking.scenes.deleted": "{{key}} (gelöscht)",
+  "walking.numbers.some": "({{some}} von {{all}} Gängen)",
+  "walking.numbers.same": "{{name}}, bei allen Gängen gleich",
+  "walking.numbers.changing":
+    "Ändert sich in jedem Gang, daher kann kein Modell davon abhängen: {{names}}.",
+  "walking.numbers.spoilt":
+    "{{text}}. Berichtigen Sie das und fügen Sie die Gänge neu hinzu, um die Spalte zu nutzen.",
+  "walking.numbers.dependsOn": "Hängt ab von",
+  "walking.numbers.dependsOn.hint":
+    "Außer von Länge, Drehung und Körpergröße; bis zu drei. Gänge ohne die Zahl werden ausgelassen.",
+  "walking.numbers.dependsOn.none": "nichts weiter",
+  "walking.numbers.names": "Weitere Zahlen",
+  "walking.numbers.names.hint":
+    "Wovon ein Modell noch abhängen kann, mit der Einheit im Namen: load_kg, oder gaze_on_display als 1 oder 0.",
+  "walking.numbers.wrong":
+    "„{{name}}“ ist nicht gültig: Buchstaben, Ziffern und Unterstriche, zuerst ein Buchstabe; nicht length, turning oder stature.",
+  "walking.numbers.unknown": "nicht bekannt",
   "walking.sets": "Gänge",
   "walking.sets.one": "Gänge",
   "walking.sets.lead": "Spuren am Boden, geteilt, wo jemand stillsteht.",
@@ -106,7 +146,7 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
   "walking.way.captures": "Aufnahmen",
   "walking.way.population": "Synthetische Geher",
   "walking.way.tracks.hint":
-    "CSV mit den Spalten id, time_s (oder frame), x, y; eine Zeile je Person und Zeitpunkt.",
+    "CSV mit den Spalten id, time_s (oder frame), x, y; eine Zeile je Person und Zeitpunkt. Eine Spalte scene sagt, wo (Schlüssel einer Szene, oder open floor); von Zahlen wie load_kg kann ein Modell abhängen.",
   "walking.way.captures.hint":
     "Schwerpunkt, Hüfte oder Gürteltracker gespeicherter Aufnahmen. Die Gänge bleiben erhalten, wenn eine Aufnahme gelöscht wird.",
   "walking.way.population.hint":
@@ -126,7 +166,7 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
   "walking.captures": "Aufnahmen",
   "walking.captures.choose": "Aufnahmen wählen",
   "walking.captures.none": "Noch keine Aufnahmen",
-  "walking.subject.of": "Wer in {{name}} geht",
+  "walking.subject": "Wer geht",
   "walking.reading": "Lesart der Karten",
   "walking.reading.chosen": "Durch Kreuzvalidierung gewählt",
   "walking.reading.paper": "Wie in der Veröffentlichung",

@@ -1,6 +1,8 @@
 import { describe, expect, it } from "vitest";
 import { changedPath, isCompletePath, NO_PATH } from "./drawnPath";
+import { furtherOf, isNumberName, numberLabel } from "./furtherNumbers";
 import { planOf, ticks, WIDTH } from "./plan";
+import { inModelsScene, OPEN_FLOOR } from "./walkedScenes";
 import { binned } from "./walkingFigures";
 
 describe("a drawn path", () => {
@@ -65,5 +67,51 @@ describe("the histogram of durations", () => {
 
   it("supports walks that all take equally long", () => {
     expect(binned([3, 3, 3]).counts[0]).toBe(3);
+  });
+});
+
+describe("a further number of walks", () => {
+  it("is labelled with the words and the unit of its name", () => {
+    const names = [
+      "load_kg",
+      "gaze_on_display",
+      "gait_speed_m_s",
+      "kg",
+      "slope_percent",
+      "load_KG",
+    ];
+    expect(names.map(numberLabel)).toEqual([
+      "Load (kg)",
+      "Gaze on display",
+      "Gait speed (m/s)",
+      "Kg",
+      "Slope (%)",
+      "Load (kg)",
+    ]);
+  });
+
+  it("has a name of letters, digits and underscores that no other dependency has", () => {
+    const names = ["load_kg", "Load2", "2load", "load (kg)", "stature", "Length_m", ""];
+    expect(names.filter(isNumberName)).toEqual(["load_kg", "Load2"]);
+    expect(furtherOf(["length_m", "stature_m", "load_kg"])).toEqual(["load_kg"]);
+  });
+});
+
+describe("the scenes of a model's walks", () => {
+  const walked = [
+    { key: null, walks: 5 },
+    { key: OPEN_FLOOR, title: OPEN_FLOOR, walks: 2 },
+    { key: "hall", title: "Hall", walks: 3 },
+  ];
+
+  it("count walks that name none in the model's scene, or on the open floor", () => {
+    expect(inModelsScene(walked, null).map(({ key, walks }) => [key, walks])).toEqual([
+      [OPEN_FLOOR, 7],
+      ["hall", 3],
+    ]);
+    expect(inModelsScene(walked, { key: "hall", title: "Hall" })).toEqual([
+      { key: "hall", title: "Hall", walks: 8 },
+      { key: OPEN_FLOOR, title: OPEN_FLOOR, walks: 2 },
+    ]);
   });
 });

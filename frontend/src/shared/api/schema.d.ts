@@ -2643,7 +2643,8 @@ export interface paths {
          * Post Version
          * @description Add a version to a study, unless one with the same content exists.
          *
-         *     Raises StaleVersion if somebody has saved another one since this one's editing began.
+         *     Raises StaleVersion if somebody has saved another one since this one's editing began, and
+         *     InvalidInput if it began with a version that does not exist.
          */
         readonly post: operations["post_version_api_studies__key__versions_post"];
         readonly delete?: never;
@@ -3705,6 +3706,8 @@ export interface paths {
          * Post Tracks
          * @description Store a table of tracks (id, time, x, y), which is the body of the request.
          *
+         *     A column `scene` says in which scene each row was walked; other columns of numbers, such as
+         *     `load_kg`, are numbers on which a model may depend, if they stay the same during a walk.
          *     `stature` may be given once for each person, as `A=1.78`, in metres.
          */
         readonly post: operations["post_tracks_api_walking_walk_sets_tracks_post"];
@@ -4882,13 +4885,20 @@ export interface components {
          * CapturedPerson
          * @description A capture with the person who walks in it.
          *
-         *     `body`: which tracked body is followed, if the capture has several.
+         *     `body`: which tracked body is followed, if the capture has several. `scene`: where it was
+         *     walked; null for the scene of the model. `numbers`: further numbers of these walks by name.
          */
         readonly CapturedPerson: {
             /** Body */
             readonly body?: string | null;
             /** Capture Id */
             readonly capture_id: string;
+            /** Numbers */
+            readonly numbers?: {
+                readonly [key: string]: number;
+            };
+            /** Scene */
+            readonly scene?: string | null;
             /** Stature M */
             readonly stature_m?: number | null;
             /** Subject */
@@ -6742,9 +6752,12 @@ export interface components {
          *
          *     `steps`: values of each steering parameter; a map has their cube as its size. `k`: neighbours.
          *     `entries`: of the blending space, blends included. `reading`: how deviations are converted to
-         *     suitability; "chosen" selects it by predicting people who were left out.
+         *     suitability; "chosen" selects it by predicting people who were left out. `depends_on`: further
+         *     numbers of the set on which the model depends, besides length, turning and stature.
          */
         readonly FitChoice: {
+            /** Depends On */
+            readonly depends_on?: readonly string[];
             /**
              * Entries
              * @default 5000
@@ -6776,7 +6789,8 @@ export interface components {
          * FittedOn
          * @description The set of walks that a model was fitted to, with its title at the time of the order.
          *
-         *     `id` is null if the set was deleted.
+         *     `id` is null if the set was deleted. `scenes` is empty for models ordered before walks named
+         *     theirs.
          */
         readonly FittedOn: {
             /** Id */
@@ -6786,6 +6800,11 @@ export interface components {
              * @enum {string}
              */
             readonly origin: "population" | "captures" | "tracks";
+            /**
+             * Scenes
+             * @default []
+             */
+            readonly scenes: readonly components["schemas"]["WalkedScene"][];
             /** Title */
             readonly title: string;
         };
@@ -7942,6 +7961,16 @@ export interface components {
             readonly sd_percent: number;
         };
         /**
+         * LeftOutWalk
+         * @description A walk that a model does not use, and why.
+         */
+        readonly LeftOutWalk: {
+            /** Reason */
+            readonly reason: string;
+            /** Walk */
+            readonly walk: string;
+        };
+        /**
          * LegAnglesView
          * @description Angles of one leg in degrees over time; figure 8 of the paper.
          *
@@ -8359,7 +8388,7 @@ export interface components {
          * @description The summary of a fitted model; `model_hash` is the hash in its file.
          *
          *     `predicted` is null for models fitted before it was computed, and empty for fewer than three
-         *     people.
+         *     people. `left_out_walks`: walks that lack one of the numbers on which the model depends.
          */
         readonly ModelSummary: {
             readonly census: components["schemas"]["CensusView"];
@@ -8373,6 +8402,11 @@ export interface components {
             /** K */
             readonly k: number;
             readonly left_out: components["schemas"]["LeftOutFigures"];
+            /**
+             * Left Out Walks
+             * @default []
+             */
+            readonly left_out_walks: readonly components["schemas"]["LeftOutWalk"][];
             /** Model Hash */
             readonly model_hash: string;
             /** Parameters */
@@ -8627,7 +8661,7 @@ export interface components {
         };
         /**
          * NewModel
-         * @description A model to fit; `scene` is the one in which tracks were walked, null for the open floor.
+         * @description A model to fit; `scene` is that of walks that name none, null for the open floor.
          */
         readonly NewModel: {
             readonly options?: components["schemas"]["FitChoice"];
@@ -8846,6 +8880,17 @@ export interface components {
             readonly value: string;
             /** What */
             readonly what: string;
+        };
+        /**
+         * NumberView
+         * @description A further number of walks, such as a load: how many walks of how many people have it.
+         */
+        readonly NumberView: {
+            /** People */
+            readonly people: number;
+            readonly range: components["schemas"]["Range"];
+            /** Walks */
+            readonly walks: number;
         };
         /**
          * ObstacleView
@@ -9754,9 +9799,10 @@ export interface components {
          * @description How well travel times of people who were left out are predicted, by one method.
          *
          *     `method`: mixed, the model of this product, or a baseline that learnt from the same walks:
-         *     constant speed, line, log-log. `crps_less_s`: by how much the error of mixed is smaller, and
-         *     the 95 % interval of that over people; its ends are null if `no_interval` says why there is
-         *     none, as in `walk evaluate`. Coverages are shares: .5 and .9 if intervals are right.
+         *     constant speed, line, log-log, and mixed without the further numbers. `crps_less_s`: by how
+         *     much the error of mixed is smaller, and the 95 % interval of that over people; its ends are null
+         *     if `no_interval` says why there is none, as in `walk evaluate`. Coverages are shares: .5 and .9
+         *     if intervals are right.
          */
         readonly PredictedView: {
             /** Coverage 50 */
@@ -9784,8 +9830,10 @@ export interface components {
          * PredictionAsked
          * @description A path for which durations are predicted.
          *
-         *     `stature_m` null: the mean of the model's people. `count` walks are drawn with `seed`, and the
-         *     same seed gives the same walks; `shown` of them are followed along the path.
+         *     `stature_m` null: the mean of the model's people. `others`: the further numbers on which the
+         *     model depends, by name; the mean of its walks for one that is not given. `count` walks are drawn
+         *     with `seed`, and the same seed gives the same walks; `shown` of them are followed along the
+         *     path.
          */
         readonly PredictionAsked: {
             /**
@@ -9793,6 +9841,10 @@ export interface components {
              * @default 500
              */
             readonly count: number;
+            /** Others */
+            readonly others?: {
+                readonly [key: string]: number;
+            };
             /**
              * Planned
              * @default false
@@ -10761,7 +10813,7 @@ export interface components {
         };
         /**
          * SceneNamed
-         * @description The scene in which the walks were planned, and the hash of its file then.
+         * @description The scene in which walks that name none were planned, and the hash of its file then.
          */
         readonly SceneNamed: {
             /** Content Hash */
@@ -12716,6 +12768,9 @@ export interface components {
         /**
          * TracksOrigin
          * @description Walks cut from an uploaded table of tracks.
+         *
+         *     `reads_columns`: whether its columns of scenes and further numbers count; not in tables that
+         *     were stored before they did.
          */
         readonly TracksOrigin: {
             /** File Name */
@@ -12729,6 +12784,11 @@ export interface components {
             readonly metres_per_unit?: number | null;
             /** Rate Hz */
             readonly rate_hz?: number | null;
+            /**
+             * Reads Columns
+             * @default false
+             */
+            readonly reads_columns: boolean;
             /** Statures M */
             readonly statures_m?: {
                 readonly [key: string]: number;
@@ -13190,6 +13250,23 @@ export interface components {
             readonly number: number;
         };
         /**
+         * WalkedScene
+         * @description A scene in which walks of a model took place, and the hash of its file at the order.
+         *
+         *     `key` is null for walks that name none, which were planned in the model's scene; for these and
+         *     for the open floor `content_hash` is null.
+         */
+        readonly WalkedScene: {
+            /** Content Hash */
+            readonly content_hash: string | null;
+            /** Key */
+            readonly key: string | null;
+            /** Title */
+            readonly title: string;
+            /** Walks */
+            readonly walks: number;
+        };
+        /**
          * WalkerView
          * @description The walk of one body, the source or an avatar.
          *
@@ -13246,12 +13323,24 @@ export interface components {
             readonly title: string;
         };
         /**
+         * WalksInScene
+         * @description How many walks of a set are in a scene; `key` is null for walks that name none.
+         */
+        readonly WalksInScene: {
+            /** Key */
+            readonly key: string | null;
+            /** Walks */
+            readonly walks: number;
+        };
+        /**
          * WalksSummary
          * @description The summary of a set of walks.
          *
-         *     `cut_by_recording`: walks during which a recording begins or ends. `missing_dependencies`: those
-         *     that only some walks have, so that no model can depend on them. `assumed`: what a table did not
-         *     say and was assumed. `doubts`: why its unit or its rate is doubtful.
+         *     `cut_by_recording`: walks during which a recording begins or ends. `missing_dependencies`:
+         *     stature, if only some walks have it, so that no model can depend on it. `assumed`: what a table
+         *     did not say and was assumed. `doubts`: why its unit or its rate is doubtful. `numbers`: further
+         *     numbers that a model can depend on, by name; `changing_numbers` change during every walk, so
+         *     that none can; `spoilt_numbers` says which columns contain text among their numbers.
          */
         readonly WalksSummary: {
             /**
@@ -13260,6 +13349,11 @@ export interface components {
              */
             readonly assumed: readonly string[];
             readonly census: components["schemas"]["CensusView"];
+            /**
+             * Changing Numbers
+             * @default []
+             */
+            readonly changing_numbers: readonly string[];
             /** Cut By Recording */
             readonly cut_by_recording: number;
             /** Dependencies */
@@ -13274,9 +13368,26 @@ export interface components {
             readonly duration_s: components["schemas"]["Range"];
             /** Missing Dependencies */
             readonly missing_dependencies: readonly string[];
+            /**
+             * Numbers
+             * @default {}
+             */
+            readonly numbers: {
+                readonly [key: string]: components["schemas"]["NumberView"];
+            };
             /** People */
             readonly people: number;
+            /**
+             * Scenes
+             * @default []
+             */
+            readonly scenes: readonly components["schemas"]["WalksInScene"][];
             readonly speed_m_s: components["schemas"]["Range"];
+            /**
+             * Spoilt Numbers
+             * @default []
+             */
+            readonly spoilt_numbers: readonly string[];
             /** Walks */
             readonly walks: number;
         };

@@ -1,9 +1,6 @@
 """Tests of walks in several scenes, and of models that depend on further numbers, over HTTP."""
 
-import csv
-import io
 import itertools
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -17,9 +14,11 @@ from tests.features.movement.walking.test_captured import captured_walk, store_c
 from tests.features.movement.walking.walkers import (
     SMALL,
     fitted,
+    load_of,
+    scene_of,
     settled,
-    table,
     upload_tracks,
+    with_columns,
 )
 
 HALL = """key: KEY
@@ -27,33 +26,6 @@ title: A hall of KEY
 bounds_m: [-2, -2, 4, 8]
 """
 RACKS = "car-and-three-racks"
-
-
-def with_columns(**columns: Callable[[str, int], str]) -> bytes:
-    """Return the walkers' table with further columns, each a function of a row's person and walk.
-
-    A row's walk is 1, 2 or 3, from amid the standing before it.
-    """
-    rows = list(csv.DictReader(io.StringIO(table().decode())))
-    text = io.StringIO()
-    writer = csv.DictWriter(text, [*rows[0], *columns])
-    writer.writeheader()
-    for row in rows:
-        person, time_s = row["id"], float(row["time_s"])
-        walk = 1 + sum(time_s > first_s + 0.2 * int(person[1]) * at
-                       for at, first_s in ((1, 2.5), (2, 5.9)))  # fmt: skip
-        writer.writerow(row | {name: of(person, walk) for name, of in columns.items()})
-    return text.getvalue().encode()
-
-
-def load_of(person: str, walk: int) -> str:
-    """Return the load of a person, who puts it down before the third walk."""
-    return str(2 * int(person[1])) if walk < 3 else "0"
-
-
-def scene_of(person: str, walk: int) -> str:
-    """Return the scene of a row: a hall for two walks of one person, then nothing is said."""
-    return {"P0": "hall-a", "P1": "open floor"}.get(person, "") if walk < 3 else ""
 
 
 def add_hall(lab: Lab, key: str, more: str = "") -> None:

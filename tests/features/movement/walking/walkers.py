@@ -1,6 +1,9 @@
 """Tables of tracks, small models and a scene for tests."""
 
+import csv
+import io
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -41,6 +44,33 @@ def table(people: int = 3, walks: int = 3, bad_line: int | None = None) -> bytes
     if bad_line is not None:
         lines[bad_line - 1] = "P0,0.5,nan,0.0"
     return "\n".join(lines).encode()
+
+
+def with_columns(**columns: Callable[[str, int], str]) -> bytes:
+    """Return the walkers' table with further columns, each a function of a row's person and walk.
+
+    A row's walk is 1, 2 or 3, from amid the standing before it.
+    """
+    rows = list(csv.DictReader(io.StringIO(table().decode())))
+    text = io.StringIO()
+    writer = csv.DictWriter(text, [*rows[0], *columns])
+    writer.writeheader()
+    for row in rows:
+        person, time_s = row["id"], float(row["time_s"])
+        walk = 1 + sum(time_s > first_s + 0.2 * int(person[1]) * at
+                       for at, first_s in ((1, 2.5), (2, 5.9)))  # fmt: skip
+        writer.writerow(row | {name: of(person, walk) for name, of in columns.items()})
+    return text.getvalue().encode()
+
+
+def load_of(person: str, walk: int) -> str:
+    """Return the load of a person, who puts it down before the third walk."""
+    return str(2 * int(person[1])) if walk < 3 else "0"
+
+
+def scene_of(person: str, walk: int) -> str:
+    """Return the scene of a row: a hall for two walks of one person, then nothing is said."""
+    return {"P0": "hall-a", "P1": "open floor"}.get(person, "") if walk < 3 else ""
 
 
 def upload_tracks(lab: Lab, data: bytes, **query: Any) -> Any:
