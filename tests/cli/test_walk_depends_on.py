@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.adapters.cosimulation import load_scene, partners_of, shipped_scenes
 from app.adapters.walks.model_file import read_model
+from app.science.cosimulation import CosimulationError
 from app.science.rotations import FloatArray
 from app.science.walking.synthetic import POPULATIONS, person_of, straight_path, walk_along
 from app.science.walking.travel_times import TimedWalks
@@ -201,3 +203,14 @@ def test_a_dependency_that_cannot_be_used_is_refused(tmp_path: Path) -> None:
     told = refusal(*fit, "pack_kg", "--people", people)
     assert "pack_kg is 5 for all 8 walks" in told
     assert not (tmp_path / "model.npz").exists()
+
+
+def test_a_road_scene_refuses_a_model_that_needs_more_than_a_path(lab: Path) -> None:
+    """A walker on a road has no load, so a model that depends on one is refused with the remedy."""
+    road = lab / "road.yaml"
+    shipped = shipped_scenes()["crossing-by-sumo"].read_text()
+    walker = shipped[: shipped.index("  - name: traffic")]
+    road.write_text(walker.replace("leaves_s: 9", "model: model.npz"))
+    refused = pytest.raises(CosimulationError, match="depends on load_kg, which a scene does not")
+    with refused, partners_of(load_scene(road), seed=1):
+        pass

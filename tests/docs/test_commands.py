@@ -110,11 +110,11 @@ class Lab:
             folder.mkdir(exist_ok=True)
             rng = np.random.default_rng((4, number))
             person = person_of(POPULATIONS[0], number, rng)
-            for length in (1.0, 3.0):
+            for length, load_kg in ((1.0, 0), (3.0, 8)):
                 track = walk_along(person, straight_path(length), rng)
                 moments = zip(track.times_s[::2], track.xy_m[::2], strict=True)
-                rows = [f"{number},{t:.4f},{x:.4f},{y:.4f}" for t, (x, y) in moments]
-                text = _table("subject,time_s,x_m,y_m", rows)
+                rows = [f"{number},{t:.4f},{x:.4f},{y:.4f},{load_kg}" for t, (x, y) in moments]
+                text = _table("subject,time_s,x_m,y_m,load_kg", rows)
                 (folder / f"walker-{number}-{length:g}.csv").write_text(text)
 
     def _two_systems(self) -> None:

@@ -48,7 +48,7 @@ from app.science.cosimulation import (
 )
 from app.science.rotations import FloatArray
 from app.science.walking.recording import dependencies_of
-from app.science.walking.records import PlannedPath
+from app.science.walking.records import PlannedPath, further_of
 
 SHIPPED = Path(__file__).with_name("scenes")
 """Scenes that are included."""
@@ -193,6 +193,11 @@ def _plan(one: WalkerOfStudy, folder: Path, rng: np.random.Generator) -> WalkerP
     vector = np.array([one.velocity_m_s, one.acceleration_m_s2, one.angular_per_m])
     if isinstance(one, WalkerFile) and one.model is not None:
         fit, _, _ = read_model(folder / one.model)
+        if further := further_of(fit.database.names):
+            raise CosimulationError(
+                f"The model {one.model} of {one.name!r} depends on {', '.join(further)}, which a"
+                " scene does not say of its walkers. Fit a model without --depends-on."
+            )
         vector = fit.named("prob").vectors(dependencies_of(path, one.stature_m), 1, rng)[0]
     looking = (one.leaves_s, one.waits_m, one.looks_s, one.accepts_s)
     return WalkerPlan(path, vector, *looking)
@@ -205,7 +210,8 @@ def _recorded(one: PathFile, folder: Path) -> tuple[FloatArray, FloatArray]:
         points = np.array(one.points, dtype=np.float64)
         return points[:, 0], points[:, 1:]
     path = folder / one.file
-    table = read_track_table(path.read_bytes(), name=path.name, reading=TrackReading())
+    reading = TrackReading(scenes=False)
+    table = read_track_table(path.read_bytes(), name=path.name, reading=reading)
     if len(table.tracks) != 1:
         raise CosimulationError(f"{path} has the tracks of {len(table.tracks)} people; give one.")
     return table.tracks[0].times_s, table.tracks[0].xy_m
