@@ -9,7 +9,7 @@ from app.features.movement.walking.sources import Store, TrackSource
 from app.features.movement.walking.worker_tasks import captured_table
 from app.models import WalkSetRow
 from tests.features.lab import Json, Lab, error, ok
-from tests.features.movement.captures.files import walk_bvh
+from tests.features.movement.captures.files import uploaded, walk_bvh
 from tests.features.movement.walking.test_captured import captured_walk, store_content
 from tests.features.movement.walking.walkers import (
     SMALL,
@@ -28,9 +28,10 @@ bounds_m: [-2, -2, 4, 8]
 RACKS = "car-and-three-racks"
 
 
-def add_hall(lab: Lab, key: str, more: str = "") -> None:
+def add_hall(lab: Lab, key: str, more: str = "", bounds: str = "-2, -2, 4, 8") -> None:
     """Add a scene without obstacles."""
-    ok(lab.operator.post("/api/walking/scenes", json={"text": HALL.replace("KEY", key) + more}))
+    text = HALL.replace("KEY", key).replace("-2, -2, 4, 8", bounds) + more
+    ok(lab.operator.post("/api/walking/scenes", json={"text": text}))
 
 
 @pytest.fixture(scope="module")
@@ -180,6 +181,26 @@ def test_captures_carry_scenes_and_numbers(database_url: str, tmp_path: Path) ->
     found = captured_table(Store(database_url), (("c0", captured_walk(content)),), source)
     assert found.summary["scenes"] == [{"key": "hall", "walks": 1}]
     assert found.summary["numbers"]["load_kg"]["range"]["mean"] == 4.0
+
+
+@pytest.mark.one_engine
+def test_a_set_of_captures_says_where_each_was_walked(walking_lab: Lab) -> None:
+    """Scene and numbers that are given for a capture are those of its walks; names are checked."""
+    calls = walking_lab.operator
+    add_hall(walking_lab, "hall-c", "clearance_m: 0.1\n", bounds="-9, -9, 9, 9")
+    capture = uploaded(calls, walk_bvh(150))
+    own = {"capture_id": capture["id"], "subject": "Ann"}
+    told = own | {"scene": "hall-c", "numbers": {"load_kg": 6.5, "gaze_on_display": 1}}
+    request = {"title": "Captured", "origin": {"kind": "captures", "captures": [told]}}
+    walks = ok(calls.post("/api/walking/walk-sets", json=request))
+    assert walks["summary"]["scenes"] == [{"key": "hall-c", "walks": 1}]
+    assert walks["summary"]["numbers"]["load_kg"]["range"]["low"] == 6.5
+    assert walks["origin"]["captures"][0]["scene"] == "hall-c"
+    for name, expected in (("stature_m", "is taken"), ("load (kg)", "pattern")):
+        request["origin"] = {"kind": "captures", "captures": [own | {"numbers": {name: 1}}]}
+        refused = calls.post("/api/walking/walk-sets", json=request)
+        assert refused.status_code == 422
+        assert expected in refused.text
 
 
 def test_a_scene_that_changed_or_is_gone_stops_a_resumed_fit(walking_lab: Lab) -> None:
