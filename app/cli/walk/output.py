@@ -313,7 +313,7 @@ def _comparison_text(one: Comparison, result: Evaluation) -> str:
 def _gains(result: Evaluation) -> list[tuple[str, float, float | None, float | None]]:
     """Return by how much P_mixed's CRPS is smaller than each baseline's, with its interval.
 
-    One of the baselines is P_mixed without the further dependencies, if the model has some.
+    P_mixed without each of the model's further dependencies is one of the baselines.
     With too few people the interval's ends are None.
     """
     rng = np.random.default_rng(1)

@@ -30,7 +30,7 @@ from app.science.walking.models import (
     SteeringModel,
     baseline_models,
     fitted,
-    model_without_further,
+    models_without_each,
 )
 from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.recording import dependencies_of
@@ -250,7 +250,7 @@ def carry_out_evaluation(
     models: list[SteeringModel] = [*fit.models]
     if fit.mixed is not None:
         models = [fit.mixed, *models, *baseline_models(fit.database, rng)]
-        models += model_without_further(fit.database, rng)
+        models += models_without_each(fit.database, rng)
     result = evaluate(models, follower, entries, rng, draws=draws, course_of=_course)
     unpredicted = [(read.names[at], reason) for at, reason in sorted(result.left_out.items())]
     return Evaluated(fit, result, read, (*read.left_out, *unpredicted))

@@ -67,7 +67,7 @@ class NamedScenes:
             known = ", ".join(sorted({*shipped_scenes(), *self.scenes}))
             raise ValueError(
                 f"{at}: there is no scene {name!r}. Scenes are {known}, and {OPEN_FLOOR!r}; for one"
-                f" of your own, give the path of its file, relative to {folder}."
+                f" of your own, give the path of its file, relative to the one that names it."
             )
         try:
             scene = _read_file(path)

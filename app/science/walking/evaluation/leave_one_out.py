@@ -26,10 +26,10 @@ from app.science.walking.models import (
     MIXED,
     covers,
     crps_s,
+    each_left_out,
     person_folds,
     space_of,
     timed_walks_of,
-    without_further,
 )
 from app.science.walking.travel_times import (
     BASELINES,
@@ -124,7 +124,7 @@ class TimesLeftOut:
     """How well travel times of people who were left out are predicted.
 
     Attributes:
-        method: "mixed", a baseline, or "mixed without" the further dependencies that a user named.
+        method: "mixed", a baseline, or "mixed without" a further dependency that a user named.
         crps_s: mean CRPS over the walks.
         crps_less_s: how much smaller the CRPS of P_mixed is, and the ends of its 95 % interval over
             people, which are None with fewer than six people; all zero for P_mixed itself.
@@ -146,8 +146,8 @@ def times_left_out(
 ) -> list[TimesLeftOut]:
     """Predict travel times of people left out, by P_mixed and the baselines learnt from the others.
 
-    If the walks have further dependencies, P_mixed without them is one more baseline: they are
-    worth having if it does worse.
+    P_mixed without each of the walks' further dependencies is one more baseline: they are worth
+    having if it does worse.
 
     Empty if there are fewer than three people, since two are needed to learn from, or if the
     database does not say which walks the recording cut off.
@@ -160,8 +160,8 @@ def times_left_out(
         return []
     compared: list[tuple[str, Curve, TimedWalks]] = [(MIXED, StartingAndStopping(), walks)]
     compared += [(curve.name, curve, walks) for curve in BASELINES]
-    if plain := without_further(database):
-        compared.append((plain[0], StartingAndStopping(), timed_walks_of(plain[1])[0]))
+    for name, plain in each_left_out(database):
+        compared.append((name, StartingAndStopping(), timed_walks_of(plain)[0]))
     scores: dict[str, FloatArray] = {}
     for method, curve, timed in compared:
         rows = np.empty((len(walks), 3))

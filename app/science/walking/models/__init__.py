@@ -16,10 +16,10 @@ from app.science.walking.models.travel_time_model import (
     WITHOUT,
     TravelTimeModel,
     baseline_models,
-    model_without_further,
+    each_left_out,
+    models_without_each,
     timed_walks_of,
     travel_time_model,
-    without_further,
 )
 
 __all__ = [
@@ -40,14 +40,14 @@ __all__ = [
     "covers",
     "crps_s",
     "density_of",
+    "each_left_out",
     "fitted",
     "iqr",
-    "model_without_further",
+    "models_without_each",
     "person_folds",
     "predictor_for",
     "restored",
     "space_of",
     "timed_walks_of",
     "travel_time_model",
-    "without_further",
 ]

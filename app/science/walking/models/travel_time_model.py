@@ -39,7 +39,7 @@ from app.science.walking.travel_times import (
 
 MIXED = "mixed"
 WITHOUT = f"{MIXED} without "
-"""What P_mixed is called without the further dependencies, before their names."""
+"""What P_mixed is called without a further dependency, before its name."""
 _WIDEST_TURN = PAPER_PARAMETERS[2].high
 
 
@@ -144,26 +144,21 @@ def baseline_models(database: WalkDatabase, rng: np.random.Generator) -> list[Tr
     return [travel_time_model(database, rng, curve) for curve in BASELINES]
 
 
-def without_further(database: WalkDatabase) -> tuple[str, WalkDatabase] | None:
-    """Return a database without its further dependencies, and what P_mixed is called on it.
+def each_left_out(database: WalkDatabase) -> list[tuple[str, WalkDatabase]]:
+    """Return a database without each of its further dependencies, and P_mixed's name on it.
 
-    Predictions that this model makes as well are not improved by those dependencies. None if the
-    database has only those of the paper.
+    A dependency without which predictions are as good is not worth having. Empty if the database
+    has only the dependencies of the paper.
     """
-    further = further_of(database.names)
-    if not further:
-        return None
-    return f"{WITHOUT}{', '.join(further)}", database.without(further)
+    names = further_of(database.names)
+    return [(f"{WITHOUT}{name}", database.without([name])) for name in names]
 
 
-def model_without_further(
-    database: WalkDatabase, rng: np.random.Generator
-) -> list[TravelTimeModel]:
-    """Learn P_mixed without the further dependencies, for comparison; empty if there are none."""
-    plain = without_further(database)
-    if plain is None:
-        return []
-    return [replace(travel_time_model(plain[1], rng), name=plain[0])]
+def models_without_each(database: WalkDatabase, rng: np.random.Generator) -> list[TravelTimeModel]:
+    """Learn P_mixed without each of the further dependencies, for comparison."""
+    return [
+        replace(travel_time_model(plain, rng), name=name) for name, plain in each_left_out(database)
+    ]
 
 
 def timed_walks_of(database: WalkDatabase) -> tuple[TimedWalks, Scaling | None]:

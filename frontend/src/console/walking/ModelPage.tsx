@@ -75,14 +75,9 @@ function ModelDetails({ model }: { readonly model: Model }): JSX.Element {
   );
 }
 
-/** How the method begins that leaves the model's further numbers out. */
+/** How the method begins that leaves one of the model's further numbers out. */
 const WITHOUT = "mixed without ";
-const wordsOf = (method: string): string =>
-  method
-    .slice(WITHOUT.length)
-    .split(", ")
-    .map((name) => namedNumber(name).words)
-    .join(", ");
+const wordsOf = (method: string): string => namedNumber(method.slice(WITHOUT.length)).words;
 
 type Summary = NonNullable<Model["summary"]>;
 
@@ -200,9 +195,9 @@ function PredictedDurations({ summary }: { readonly summary: Summary }): JSX.Ele
     name.startsWith(WITHOUT)
       ? t("walking.predicted.without", { what: wordsOf(name) })
       : t(`walking.predicted.${name}` as Key);
-  const needless = predicted.find(
-    (one) => one.method.startsWith(WITHOUT) && one.crps_less_s[0] <= 0,
-  );
+  const needless = predicted
+    .filter((one) => one.method.startsWith(WITHOUT) && one.crps_less_s[0] <= 0)
+    .map((one) => wordsOf(one.method));
   return (
     <section className={classes.card}>
       <Title order={2} size="h3">
@@ -248,11 +243,11 @@ function PredictedDurations({ summary }: { readonly summary: Summary }): JSX.Ele
               })}
             </tbody>
           </table>
-          {needless !== undefined && (
-            <Notice tone="warn">
-              {t("walking.predicted.needless", { what: wordsOf(needless.method) })}
+          {needless.map((what) => (
+            <Notice key={what} tone="warn">
+              {t("walking.predicted.needless", { what })}
             </Notice>
-          )}
+          ))}
           {!given && (
             <p className={classes.soft}>{t("walking.predicted.noInterval", { why: noInterval })}</p>
           )}

@@ -9799,7 +9799,7 @@ export interface components {
          * @description How well travel times of people who were left out are predicted, by one method.
          *
          *     `method`: mixed, the model of this product, or a baseline that learnt from the same walks:
-         *     constant speed, line, log-log, and mixed without the further numbers. `crps_less_s`: by how
+         *     constant speed, line, log-log, and mixed without each further number. `crps_less_s`: by how
          *     much the error of mixed is smaller, and the 95 % interval of that over people; its ends are null
          *     if `no_interval` says why there is none, as in `walk evaluate`. Coverages are shares: .5 and .9
          *     if intervals are right.

@@ -1,5 +1,7 @@
 """Tests of what further dependencies are worth: a load that slows people down, and pure noise."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -90,6 +92,22 @@ def test_pure_noise_hardly_worsens_the_prediction_of_others(
     assert with_noise_s <= (1.0 + worse_by) * plain_s
     gain_s = found["mixed without load_kg"].crps_less_s[0]
     assert gain_s == pytest.approx(plain_s - with_noise_s)
+
+
+def test_each_dependency_is_judged_by_itself() -> None:
+    """Of a load and a number without meaning, the rows without each say which one helps."""
+    rng = np.random.default_rng(11)
+    loads_kg = np.tile([0.0, 0.0, 0.0, 0.0, 10.0, 10.0, 10.0, 10.0], PEOPLE)
+    walks = database(loads_kg, 0.02, seed=1)
+    noise = rng.normal(size=(len(walks), 1))
+    both = replace(walks, names=(*walks.names, "mood"), vectors=np.hstack([walks.vectors, noise]))
+    found = left_out(both)
+    assert list(found)[-2:] == ["mixed without load_kg", "mixed without mood"]
+    helps, helps_not = (
+        found[f"mixed without {name}"].crps_less_s[0] for name in ("load_kg", "mood")
+    )
+    assert helps > 0.1 * found["mixed"].crps_s
+    assert abs(helps_not) < WALK_WORSE_BY * found["mixed"].crps_s
 
 
 def test_a_database_without_further_dependencies_has_no_such_row() -> None:
