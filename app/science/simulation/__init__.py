@@ -18,10 +18,21 @@ from app.science.simulation.footing import Footing
 from app.science.simulation.goal import Goal, GoalKind, SimulationError
 from app.science.simulation.idle import idle_movement, relaxed_pose
 from app.science.simulation.participant import SimulatedParticipant
-from app.science.simulation.traits import MovementTraits
+from app.science.simulation.paths import skewed_jerk
+from app.science.simulation.traits import (
+    TEMPO_SPREAD,
+    MovementTraits,
+    ReachingPeople,
+    ReachingPerson,
+    difficulty_bits,
+    draw_traits,
+    shortest_time_s,
+    usual_time_s,
+)
 
 __all__ = [
     "GESTURES_DEG",
+    "TEMPO_SPREAD",
     "Aspect",
     "Build",
     "FingerCapsules",
@@ -30,15 +41,22 @@ __all__ = [
     "GoalKind",
     "LoopedFingers",
     "MovementTraits",
+    "ReachingPeople",
+    "ReachingPerson",
     "SimulatedFingers",
     "SimulatedItem",
     "SimulatedParticipant",
     "SimulationError",
     "agreement",
+    "difficulty_bits",
     "draw_build",
+    "draw_traits",
     "gesture_angles",
     "idle_movement",
     "pointing",
     "relaxed_pose",
+    "shortest_time_s",
     "simulated_answers",
+    "skewed_jerk",
+    "usual_time_s",
 ]

@@ -187,7 +187,7 @@ class SimulatedParticipant:
                 continue
             tip = self._tip(side) if hand.work == 0.0 else None
             hand.vision.perceive(time_s)
-            aim = Aim(self.traits, 1.0, _PRESS_M)
+            aim = Aim(self.traits, 1.0, _PRESS_M, self.traits.reaching)
             hand.follow(time_s, step_s, tip, aim, self._rng)
             if hand.work > 0.0:
                 missing = self._posture.arm(local, root, side, hand.tip_m, hand.fingers, hand.work)

@@ -8,6 +8,11 @@ J. Neuroscience 5:1688-1703)
 Several movements overlap a little and add up, which rounds the corners at the way-points
 (superposition of submovements: Flash and Henis 1991, J. Cognitive Neuroscience 3:220-230).
 
+People's profiles are often skewed: they are fastest early and home in, or late (Nagasaki 1989,
+Experimental Brain Research 74:319-326). A skewed movement follows the same profile with its time
+warped, s = 1 - (1 - t / d)^skew: above 1 it is fastest early, below 1 late, and 1 changes nothing.
+The form of this warp is our own.
+
 Joints turn no faster than muscles can turn them (`limit_turn_rate`). Inverse kinematics has
 singular poses, in which a small change of the goal turns a joint by any angle within one frame: an
 elbow or a knee that becomes straight, fingers along the arm's own axis. There a joint turns as
@@ -34,12 +39,27 @@ def minimum_jerk(progress: float) -> float:
     return progress**3 * (10.0 + progress * (6.0 * progress - 15.0))
 
 
+def skewed_jerk(progress: float, skew: float) -> float:
+    """Return the share of the way covered by a skewed movement after a share of its time.
+
+    Any progress is valid and clamped to 0 to 1; `skew` is above 1/3, else the speed at the end
+    would not be zero.
+    """
+    if skew == 1.0 or not 0.0 < progress < 1.0:
+        return minimum_jerk(progress)
+    return minimum_jerk(1.0 - (1.0 - progress) ** skew)
+
+
 @dataclass(frozen=True)
 class SmoothPath:
-    """A path in time: its start point and its movements (start time, duration, displacement)."""
+    """A path in time: its start point and its movements (start time, duration, displacement).
+
+    All movements have the same `skew`, 1 for minimum jerk.
+    """
 
     start_m: Vector
     moves: tuple[tuple[float, float, Vector], ...]
+    skew: float = 1.0
 
     @property
     def end_s(self) -> float:
@@ -50,13 +70,13 @@ class SmoothPath:
         """Return the path with movement `leg` and all later ones delayed until `until_s`."""
         delay_s = max(until_s - self.moves[leg][0], 0.0)
         later = tuple((begins + delay_s, lasts, way) for begins, lasts, way in self.moves[leg:])
-        return SmoothPath(self.start_m, self.moves[:leg] + later)
+        return SmoothPath(self.start_m, self.moves[:leg] + later, self.skew)
 
     def at(self, time_s: float) -> Vector:
         """Return the point of the path at a time; constant before the start and after the end."""
         x, y, z = self.start_m
         for start, duration, (dx, dy, dz) in self.moves:
-            share = minimum_jerk((time_s - start) / duration)
+            share = skewed_jerk((time_s - start) / duration, self.skew)
             x, y, z = x + share * dx, y + share * dy, z + share * dz
         return (x, y, z)
 
@@ -66,7 +86,9 @@ def path_length(points: list[Vector]) -> float:
     return sum(v_length(v_subtract(b, a)) for a, b in pairwise(points))
 
 
-def path_through(points: list[Vector], start_s: float, duration_s: float) -> SmoothPath:
+def path_through(
+    points: list[Vector], start_s: float, duration_s: float, skew: float = 1.0
+) -> SmoothPath:
     """Return a path through two or more points that takes `duration_s` in all.
 
     A longer leg gets more time, by the square root of its length, so that all have equal
@@ -81,7 +103,7 @@ def path_through(points: list[Vector], start_s: float, duration_s: float) -> Smo
         lasts = share * stretch
         moves.append((begins, lasts, leg))
         begins += lasts * (1.0 - _OVERLAP)
-    return SmoothPath(points[0], tuple(moves))
+    return SmoothPath(points[0], tuple(moves), skew)
 
 
 MOST_TURN_RAD_PER_S = radians(1500.0)

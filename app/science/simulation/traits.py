@@ -17,17 +17,61 @@
 The added latency is not among them: a person does not know it. It shows in what they see (`vision`)
 and in when a touch counts, and only through these in what they do.
 
+Pace and shape of a hand's movements can be learnt from recordings instead (`ReachingPeople`,
+fitted by the package `reaching`): tempo, spread and shape of the table are then not used for hands.
+
 The assumed values are our own: they make rehearsals look alive and are no claim about people.
 Figures with a source were taken from the papers' well-known summaries.
 """
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 _FASTEST_MEAN_SPEED_M_S = 1.6
 _INTERCEPT_S, _SLOPE_S_PER_BIT = 0.230, 0.169
+TEMPO_SPREAD = 0.15
+"""SD of the logarithm of tempo between people (assumed)."""
+
+
+def difficulty_bits(distance_m: float, near_m: float) -> float:
+    """Return the index of difficulty of a movement to a target of this half width, in bits."""
+    return math.log2(distance_m / (2.0 * near_m) + 1.0)
+
+
+def usual_time_s(distance_m: float, near_m: float) -> float:
+    """Return the time that the pace of the table gives a movement to a target's half width."""
+    return _INTERCEPT_S + _SLOPE_S_PER_BIT * difficulty_bits(distance_m, near_m)
+
+
+def shortest_time_s(distance_m: float) -> float:
+    """Return the time below which nobody moves a hand over a distance (assumed)."""
+    return distance_m / _FASTEST_MEAN_SPEED_M_S
+
+
+class ReachingPerson(Protocol):
+    """Protocol of how one person's hands move, learnt from recordings."""
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """How many movements were drawn, and how many of them outside the recorded distances."""
+        ...
+
+    def movement(
+        self, distance_m: float, near_m: float, rng: np.random.Generator
+    ) -> tuple[float, float]:
+        """Draw a movement to a target of this half width: its time in seconds, and its skew."""
+        ...
+
+
+class ReachingPeople(Protocol):
+    """Protocol of how people's hands move, learnt from recordings."""
+
+    def person(self, rng: np.random.Generator) -> ReachingPerson:
+        """Draw one person."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -38,7 +82,7 @@ class MovementTraits:
     person perceives what they see. `correction_per_s`: share of the seen error that they correct
     in a second, `learning_per_s`: that they keep for later movements. `patience_s`: how long a
     limb rests without effect before the person tries again, `caught_s`: how long if it is seen to
-    be caught on its way.
+    be caught on its way. `reaching`: how the hands move, None for tempo and spread.
     """
 
     reaction_s: float = 0.27
@@ -53,6 +97,7 @@ class MovementTraits:
     foot_tempo: float = 1.4
     patience_s: float = 1.2
     caught_s: float = 0.4
+    reaching: ReachingPerson | None = None
 
     def reaction(self, rng: np.random.Generator) -> float:
         """Draw a reaction time in seconds, never below 0.12 s."""
@@ -61,10 +106,9 @@ class MovementTraits:
 
     def movement_time(self, distance_m: float, near_m: float, rng: np.random.Generator) -> float:
         """Draw the planned time of a movement over this distance to this half width."""
-        difficulty = math.log2(distance_m / (2.0 * near_m) + 1.0)
-        mean_s = _INTERCEPT_S + _SLOPE_S_PER_BIT * difficulty
+        mean_s = usual_time_s(distance_m, near_m)
         drawn = self.tempo * mean_s * math.exp(self.movement_spread * rng.standard_normal())
-        return max(drawn, distance_m / _FASTEST_MEAN_SPEED_M_S)
+        return max(drawn, shortest_time_s(distance_m))
 
     def scatter_m(self, distance_m: float, duration_s: float) -> float:
         """Return the SD of the end of a movement along its way, in metres."""
@@ -75,6 +119,6 @@ def draw_traits(rng: np.random.Generator) -> MovementTraits:
     """Draw the traits of one person."""
     return MovementTraits(
         reaction_s=max(0.15, 0.27 + 0.05 * rng.standard_normal()),
-        tempo=math.exp(0.15 * rng.standard_normal()),
+        tempo=math.exp(TEMPO_SPREAD * rng.standard_normal()),
         precision=math.exp(0.25 * rng.standard_normal()),
     )

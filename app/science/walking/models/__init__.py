@@ -8,7 +8,7 @@ from app.science.walking.models.annealing import StaticFit
 from app.science.walking.models.crps import covers, crps_s, iqr
 from app.science.walking.models.fitting import FitOptions, FittedWalking, fitted, restored, space_of
 from app.science.walking.models.prediction import Prediction, Predictor, predictor_for
-from app.science.walking.models.reading_choice import ReadingScore, person_folds
+from app.science.walking.models.reading_choice import ReadingScore, person_folds, ranked_readings
 from app.science.walking.models.sampling import HEADROOM, MixtureSampler, density_of
 from app.science.walking.models.steering_models import ProbabilisticModel, SteeringModel
 from app.science.walking.models.travel_time_model import (
@@ -46,6 +46,7 @@ __all__ = [
     "models_without_each",
     "person_folds",
     "predictor_for",
+    "ranked_readings",
     "restored",
     "space_of",
     "timed_walks_of",

@@ -9,7 +9,13 @@ what somebody stood still.
 from app.science.walking.recording.capture_tracks import TrackingOptions, track_of_motion
 from app.science.walking.recording.census import census
 from app.science.walking.recording.plausibility import doubts_about, extent_of
-from app.science.walking.recording.segmentation import rounds_of, walks_of
+from app.science.walking.recording.segmentation import (
+    SegmentationRules,
+    moving,
+    rounds_of,
+    smoothed,
+    walks_of,
+)
 from app.science.walking.recording.tracks import Walker
 from app.science.walking.recording.walks import (
     LeftOut,
@@ -22,6 +28,7 @@ from app.science.walking.recording.walks import (
 __all__ = [
     "LeftOut",
     "Recorded",
+    "SegmentationRules",
     "TrackingOptions",
     "Walker",
     "census",
@@ -29,8 +36,10 @@ __all__ = [
     "doubts_about",
     "entry_of",
     "extent_of",
+    "moving",
     "planned_walk",
     "rounds_of",
+    "smoothed",
     "track_of_motion",
     "walks_of",
 ]

@@ -37,7 +37,7 @@ def evenly(track: Track) -> tuple[FloatArray, FloatArray]:
 
 
 def smoothed(xy_m: FloatArray, rate_hz: float, sigma_s: float = SIGMA_S) -> FloatArray:
-    """Smooth positions (N, 2) sampled at a constant rate.
+    """Smooth positions (N, d) sampled at a constant rate, on the floor or in space.
 
     At its ends a track is continued by its point reflection about the last point: that point is
     unchanged, and so is the speed of a person whom the recording cuts off during a walk.
@@ -110,7 +110,7 @@ def _movements(track: Track, rules: SegmentationRules) -> list[Walk]:
     times_s, places = evenly(track)
     places = smoothed(places, track.rate_hz, rules.sigma_s)
     walks = []
-    for first, last in _moving(times_s, places, rules):
+    for first, last in moving(times_s, places, rules):
         # The slow samples before and after it are its start and its goal.
         begin, end = max(0, first - 1), min(len(times_s) - 1, last + 1)
         others, changing = _others(track, times_s[begin], times_s[end])
@@ -154,10 +154,13 @@ def _others(
     return others, changing
 
 
-def _moving(
+def moving(
     times_s: FloatArray, places: FloatArray, rules: SegmentationRules
 ) -> list[tuple[int, int]]:
-    """Return the first and last sample of each stretch of movement between stops."""
+    """Return the first and last sample of each stretch of movement between stops.
+
+    Places (N, d) are sampled at a constant rate, on the floor or in space.
+    """
     step_s = float(times_s[1] - times_s[0])
     speeds = np.linalg.norm(np.gradient(places, step_s, axis=0), axis=1)
     slow = np.asarray(speeds < rules.still_m_s, dtype=np.bool_)
