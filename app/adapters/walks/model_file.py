@@ -1,47 +1,34 @@
 """Store a fitted walking model as a file: the tables of its walks, and how it was fitted.
 
-The file is a NumPy archive without pickles: `header`, a JSON text, and the tables of the database.
-The space is not stored, because the seed reproduces it. The header contains a hash of everything
-else, so that a truncated or changed file is rejected. What P_mixed learnt is in the header, where a
+The file is an archive that notices damage (`hashed_archive`), with the tables of the database. The
+space is not stored, because the seed reproduces it. What P_mixed learnt is in the header, where a
 file of an earlier version has nothing: it predicts with P_prob, and earlier programs read new files
-as they did before. The file is written next to its destination
-and then moved there: a reader finds either the old or the new file, complete.
+as they did before.
 """
 
-import hashlib
-import json
-import zipfile
 from dataclasses import asdict
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
+from app.adapters.hashed_archive import ArchiveKind
 from app.science.walking.following import FollowingRules
 from app.science.walking.maps import SuitabilityOptions, WalkDatabase
 from app.science.walking.models import FitOptions, FittedWalking, ReadingScore, StaticFit, restored
 from app.science.walking.records import ParameterGrid, SteeringParameter, WalkingError
 from app.science.walking.travel_times import Posterior, StartingAndStopping
-from app.whole_files import write_whole
 
 FORMAT, VERSION = "reembody-walking-model", 1
-MOST_BYTES = 2_000_000_000
 _TABLES = ("vectors", "deviations", "arrivals_s", "durations_s", "lengths_m")
+_KIND = ArchiveKind(FORMAT, VERSION, _TABLES, "a walking model", "./run walk fit", WalkingError)
 
 
 def write_model(path: Path, fit: FittedWalking, rules: FollowingRules) -> str:
     """Write a model atomically and return its content hash; raise OSError."""
-    tables = {name: np.ascontiguousarray(getattr(fit.database, name)) for name in _TABLES}
-    header = _header(fit, rules)
-    digest = content_hash(header, tables)
-    text = json.dumps({**header, "content_hash": digest}, sort_keys=True)
-    letters = np.frombuffer(text.encode(), dtype=np.uint8)
-
-    def write(file: IO[bytes]) -> None:
-        np.savez_compressed(file, allow_pickle=False, header=letters, **tables)
-
-    write_whole(path, write)
-    return digest
+    return _KIND.write(
+        path, _header(fit, rules), {name: getattr(fit.database, name) for name in _TABLES}
+    )
 
 
 def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
@@ -51,49 +38,17 @@ def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
         WalkingError: the file is not a model, of a later version, or damaged.
         OSError: it cannot be opened.
     """
-    if path.stat().st_size > MOST_BYTES:
-        raise WalkingError(f"{path}: larger than {MOST_BYTES} bytes, which no model is.")
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            header = json.loads(archive["header"].tobytes().decode())
-            tables = {name: archive[name] for name in _TABLES}
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise WalkingError(f"{path}: not a walking model; `./run walk fit` writes one.") from error
-    _check_header(path, header)
-    digest = str(header.pop("content_hash", ""))
-    if digest != content_hash(header, tables):
-        raise WalkingError(f"{path}: damaged, its content does not match its hash; fit it again.")
+    header, tables, digest = _KIND.read(path)
     try:
         return _fit_of(header, tables), FollowingRules(**header["rules"]), digest
     except (KeyError, TypeError) as error:
         raise WalkingError(f"{path}: incomplete ({error}); fit it again.") from error
 
 
-def content_hash(header: dict[str, Any], tables: dict[str, Any]) -> str:
-    """Return the SHA-256 of the header, without its own hash, and the tables."""
-    digest = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
-    for name in _TABLES:
-        table = tables[name]
-        digest.update(f"{name} {table.dtype.str} {table.shape}".encode())
-        digest.update(np.ascontiguousarray(table).tobytes())
-    return digest.hexdigest()
-
-
-def _check_header(path: Path, header: object) -> None:
-    if not isinstance(header, dict) or header.get("format") != FORMAT:
-        raise WalkingError(f"{path}: not a walking model.")
-    if header.get("version") != VERSION:
-        raise WalkingError(
-            f"{path}: version {header.get('version')} of the format, this program reads {VERSION}."
-        )
-
-
 def _header(fit: FittedWalking, rules: FollowingRules) -> dict[str, Any]:
     base, static = fit.database, fit.static
     return {
         **_travel_times(fit),
-        "format": FORMAT,
-        "version": VERSION,
         "parameters": [asdict(one) for one in base.grid.parameters],
         "values": [list(values) for values in base.grid.values],
         "metric": base.metric,

@@ -1,0 +1,94 @@
+"""Store tables with a header as one file that notices damage: a NumPy archive without pickles.
+
+The archive holds `header`, a JSON text, and tables. The header contains a hash of everything else,
+so that a truncated or changed file is rejected. The file is written next to its destination and
+then moved there: a reader finds either the old or the new file, complete.
+"""
+
+import hashlib
+import json
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any, Final
+
+import numpy as np
+
+from app.whole_files import write_whole
+
+MOST_BYTES: Final = 2_000_000_000
+
+
+@dataclass(frozen=True)
+class ArchiveKind:
+    """A kind of file.
+
+    Attributes:
+        format: what its header calls it.
+        version: of its format.
+        tables: the names of its tables, in the order of the hash.
+        title: what it is, as in "a walking model".
+        command: the command that writes one.
+        error: what is raised for a file that is none.
+    """
+
+    format: str
+    version: int
+    tables: Sequence[str]
+    title: str
+    command: str
+    error: type[ValueError]
+
+    def write(self, path: Path, header: Mapping[str, Any], tables: Mapping[str, Any]) -> str:
+        """Write a file atomically and return its content hash; raise OSError."""
+        whole = {**header, "format": self.format, "version": self.version}
+        own = {name: np.ascontiguousarray(tables[name]) for name in self.tables}
+        digest = self.content_hash(whole, own)
+        text = json.dumps({**whole, "content_hash": digest}, sort_keys=True)
+        letters = np.frombuffer(text.encode(), dtype=np.uint8)
+
+        def write(file: IO[bytes]) -> None:
+            np.savez_compressed(file, allow_pickle=False, header=letters, **own)
+
+        write_whole(path, write)
+        return digest
+
+    def read(self, path: Path) -> tuple[dict[str, Any], dict[str, Any], str]:
+        """Read a file; return its header, its tables and its content hash.
+
+        Raises:
+            ValueError: (`error`) the file is of another kind, of a later version, or damaged.
+            OSError: it cannot be opened.
+        """
+        if path.stat().st_size > MOST_BYTES:
+            raise self.error(f"{path}: larger than {MOST_BYTES} bytes, which no model is.")
+        try:
+            with np.load(path, allow_pickle=False) as archive:
+                header = json.loads(archive["header"].tobytes().decode())
+                tables = {name: archive[name] for name in self.tables}
+        except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+            raise self.error(f"{path}: not {self.title}; `{self.command}` writes one.") from error
+        self._check_header(path, header)
+        digest = str(header.pop("content_hash", ""))
+        if digest != self.content_hash(header, tables):
+            raise self.error(f"{path}: damaged, its content does not match its hash; fit it again.")
+        return header, tables, digest
+
+    def content_hash(self, header: Mapping[str, Any], tables: Mapping[str, Any]) -> str:
+        """Return the SHA-256 of the header, without its own hash, and the tables."""
+        digest = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
+        for name in self.tables:
+            table = tables[name]
+            digest.update(f"{name} {table.dtype.str} {table.shape}".encode())
+            digest.update(np.ascontiguousarray(table).tobytes())
+        return digest.hexdigest()
+
+    def _check_header(self, path: Path, header: object) -> None:
+        if not isinstance(header, dict) or header.get("format") != self.format:
+            raise self.error(f"{path}: not {self.title}.")
+        if header.get("version") != self.version:
+            raise self.error(
+                f"{path}: version {header.get('version')} of the format, this program reads"
+                f" {self.version}."
+            )
