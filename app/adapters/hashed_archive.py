@@ -64,7 +64,7 @@ class ArchiveKind:
         if path.stat().st_size > MOST_BYTES:
             raise self.error(f"{path}: larger than {MOST_BYTES} bytes, which no model is.")
         try:
-            with np.load(path, allow_pickle=False) as archive:
+            with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
                 header = json.loads(archive["header"].tobytes().decode())
                 tables = {name: archive[name] for name in self.tables}
         except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:

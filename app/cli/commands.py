@@ -16,6 +16,7 @@ from app.cli.errors import INCOMPLETE, reported, warn
 from app.cli.figure.command import figure
 from app.cli.pilot.command import pilot
 from app.cli.progress import Activity
+from app.cli.reach.command import reach
 from app.cli.retarget.command import retarget
 from app.cli.serve.command import serve, tls
 from app.cli.tracking.command import tracking
@@ -29,6 +30,7 @@ app = typer.Typer(
 )
 app.add_typer(tls, name="tls")
 app.add_typer(walk, name="walk")
+app.add_typer(reach, name="reach")
 app.add_typer(avatar, name="avatar")
 app.add_typer(pilot, name="pilot")
 app.add_typer(tracking, name="tracking")

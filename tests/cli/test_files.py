@@ -30,6 +30,10 @@ READ: dict[str, tuple[str, ...]] = {
     "walk evaluate model": (MISSING, "walks.csv"),
     "walk evaluate walks": ("model.npz", MISSING),
     "walk evaluate people": ("model.npz", "walks.csv", "--people", MISSING),
+    "reach fit recordings": (MISSING, "--out", "reaching.npz"),
+    "reach fit people": ("hands.csv", "--out", "reaching.npz", "--people", MISSING),
+    "reach evaluate model": (MISSING,),
+    "reach sample model": (MISSING, "--distance", "0.3"),
     "avatar save file": (MISSING, "mine"),
     "avatar edit operations": ("standard", "--operations", MISSING),
     "instrument answers": (MISSING,),
@@ -68,6 +72,7 @@ WRITTEN = {
     "avatar convert out",
     "avatar load out",
     "walk fit out",
+    "reach fit out",
     "rehearse data",
     "pilot power out",
     "pilot cohort out",
@@ -126,6 +131,7 @@ def test_a_missing_file_is_reported_in_a_sentence(what: str, folder: Path) -> No
         ("retarget", ("clip.bvh", "--to", "165cm", "--out", "none/out.bvh")),
         ("tune", ("--out", "none/out.json")),
         ("walk", ("fit", "walks.csv", "--out", "none/out.npz")),
+        ("reach", ("fit", "hands.csv", "--out", "none/out.npz")),
     ],
 )
 def test_a_missing_output_folder_is_reported_before_the_work(

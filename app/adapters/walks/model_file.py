@@ -13,22 +13,20 @@ from typing import Any
 import numpy as np
 
 from app.adapters.hashed_archive import ArchiveKind
+from app.adapters.map_tables import TABLES, database_from, header_of, tables_of
 from app.science.walking.following import FollowingRules
-from app.science.walking.maps import SuitabilityOptions, WalkDatabase
+from app.science.walking.maps import SuitabilityOptions
 from app.science.walking.models import FitOptions, FittedWalking, ReadingScore, StaticFit, restored
-from app.science.walking.records import ParameterGrid, SteeringParameter, WalkingError
+from app.science.walking.records import WalkingError
 from app.science.walking.travel_times import Posterior, StartingAndStopping
 
 FORMAT, VERSION = "reembody-walking-model", 1
-_TABLES = ("vectors", "deviations", "arrivals_s", "durations_s", "lengths_m")
-_KIND = ArchiveKind(FORMAT, VERSION, _TABLES, "a walking model", "./run walk fit", WalkingError)
+_KIND = ArchiveKind(FORMAT, VERSION, TABLES, "a walking model", "./run walk fit", WalkingError)
 
 
 def write_model(path: Path, fit: FittedWalking, rules: FollowingRules) -> str:
     """Write a model atomically and return its content hash; raise OSError."""
-    return _KIND.write(
-        path, _header(fit, rules), {name: getattr(fit.database, name) for name in _TABLES}
-    )
+    return _KIND.write(path, _header(fit, rules), tables_of(fit.database))
 
 
 def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
@@ -49,13 +47,7 @@ def _header(fit: FittedWalking, rules: FollowingRules) -> dict[str, Any]:
     base, static = fit.database, fit.static
     return {
         **_travel_times(fit),
-        "parameters": [asdict(one) for one in base.grid.parameters],
-        "values": [list(values) for values in base.grid.values],
-        "metric": base.metric,
-        "names": list(base.names),
-        "subjects": list(base.subjects),
-        "sources": list(base.sources),
-        "kinds": list(base.kinds),
+        **header_of(base),
         "rules": asdict(rules),
         "seed": fit.options.seed,
         "k": fit.options.k,
@@ -110,20 +102,7 @@ def _posterior_of(header: dict[str, Any]) -> Posterior | None:
 
 
 def _fit_of(header: dict[str, Any], tables: dict[str, Any]) -> FittedWalking:
-    grid = ParameterGrid(
-        tuple(SteeringParameter(**one) for one in header["parameters"]),
-        tuple(tuple(values) for values in header["values"]),
-    )
-    database = WalkDatabase(
-        grid=grid,
-        metric=header["metric"],
-        names=tuple(header["names"]),
-        subjects=tuple(header["subjects"]),
-        sources=tuple(header["sources"]),
-        kinds=tuple(header["kinds"]),
-        resting=np.array(header["resting"]) if "resting" in header else None,
-        **tables,
-    )
+    database = database_from(header, tables)
     reading = SuitabilityOptions(**header["reading"])
     given = None if header["reading_chosen"] else reading
     options = FitOptions(header["seed"], header["k"], header["entries"], given)

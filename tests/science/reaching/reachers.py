@@ -56,6 +56,16 @@ def hand_of(
     return HandTrack(np.arange(len(places)) / RATE_HZ, positions, "right", who)
 
 
+def as_tracker_file(track: HandTrack) -> str:
+    """Return a track as a tracker file of UXF, in which a right hand moves without turning."""
+    axes = [f"right_{kind}_{axis}" for kind in ("pos", "rot") for axis in "xyz"]
+    rows = [
+        f"{time_s:.4f},{x:.5f},{y:.5f},{z:.5f},10,20,30"
+        for time_s, (x, y, z) in zip(track.times_s, track.positions_m, strict=True)
+    ]
+    return "\n".join([",".join(["time", *axes]), *rows]) + "\n"
+
+
 def reach_of_the_agent(tempo: float, skew: float, distance_m: float = 0.4) -> Reach:
     """Return a reach of the simulation itself, cut as recordings are, and sampled densely."""
     lasts_s = np.array([tempo * usual_time_s(distance_m, NEAR_M)])

@@ -1,0 +1,1 @@
+"""The command `reembody reach`: learn from recorded hands how people reach."""

@@ -1,0 +1,166 @@
+"""Read the inputs of `reembody reach`: hands in captures, and whose they are."""
+
+import csv
+import io
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from app.adapters.captures import CaptureError, read_capture_file
+from app.science.reaching import (
+    HandTrack,
+    NoReach,
+    Reach,
+    Reacher,
+    ReachingError,
+    ReachRules,
+    hand_tracks,
+    reaches_of,
+)
+from app.science.retargeting import propose_joint_map
+from app.science.rig import RigError, RigMotion
+
+_UXF_SESSION = re.compile(r"S\d{3,}")
+_NAMES_SHOWN = 6
+
+
+@dataclass(frozen=True)
+class HandsOrder:
+    """The recordings to learn from.
+
+    Attributes:
+        files: captures.
+        people: table that says whose they are.
+        hand: the name of the hand in them, None to find hands by their names.
+        synthetic: whether a program moved the hands.
+    """
+
+    files: tuple[Path, ...]
+    people: Path | None = None
+    hand: str | None = None
+    synthetic: bool = False
+
+
+@dataclass(frozen=True)
+class _Row:
+    """What the table of people says of a recording."""
+
+    subject: str
+    width_m: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedReaches:
+    """The reaches of some recordings.
+
+    Attributes:
+        reaches: in the order of the files.
+        left_out: movements that are no reaches.
+        named_by_file: people who are only known by the names of their files or folders.
+        notices: recordings that were given twice, or in which no hand moves.
+    """
+
+    reaches: list[Reach] = field(default_factory=list)
+    left_out: list[NoReach] = field(default_factory=list)
+    named_by_file: set[str] = field(default_factory=set)
+    notices: list[str] = field(default_factory=list)
+
+
+def read_reaches(order: HandsOrder, rules: ReachRules) -> RecordedReaches:
+    """Read all reaches of some recordings.
+
+    Raises:
+        ValueError: a file cannot be used, or the table of people names none of them.
+        OSError: a file cannot be opened.
+    """
+    people = {} if order.people is None else _read_people(order.people)
+    found, known = RecordedReaches(), set[bytes]()
+    used: set[str] = set()
+    for path in order.files:
+        key = next((name for name in people if _ends_with(path, name)), None)
+        if key is not None:
+            used.add(key)
+        who = _reacher(path, None if key is None else people[key], order)
+        if key is None:
+            found.named_by_file.add(who.subject)
+        tracks = _hands(path, who, order.hand)
+        if not tracks:
+            found.notices.append(f"{who.source}: no hand moves")
+        for track in tracks:
+            content = track.positions_m.tobytes() + track.times_s.tobytes()
+            if content in known:
+                found.notices.append(f"{track.name}: given before, sample for sample; left out")
+                continue
+            known.add(content)
+            reaches, left_out = reaches_of(track, rules)
+            found.reaches.extend(reaches)
+            found.left_out.extend(left_out)
+    if people and not used:
+        raise ValueError(
+            f"{order.people} lists {_some(sorted(people))}, none of which is among the recordings:"
+            " give the files' names as they end, as in P7/right.csv."
+        )
+    return found
+
+
+def _hands(path: Path, who: Reacher, hand: str | None) -> list[HandTrack]:
+    try:
+        motion = read_capture_file(path).motion
+        joint_map = propose_joint_map(motion.rig).joint_map if isinstance(motion, RigMotion) else {}
+        return hand_tracks(motion, who, joint_map=joint_map, named=hand)
+    except (CaptureError, RigError) as error:
+        raise ValueError(f"{path}: {error}") from error
+    except ReachingError as error:
+        raise ValueError(str(error)) from error
+
+
+def _reacher(path: Path, row: _Row | None, order: HandsOrder) -> Reacher:
+    """Return whose recording it is: by the table, by a folder of UXF, or else by its name."""
+    parts = path.parts
+    uxf = [at for at, part in enumerate(parts[:-1]) if _UXF_SESSION.fullmatch(part) and at > 0]
+    source, subject = path.name, path.stem
+    if uxf:
+        # Files of different people and sessions have the same names there.
+        begin = max(uxf[-1] - 2, 0)
+        source, subject = "/".join(parts[begin:]), parts[uxf[-1] - 1]
+    kind: Literal["human", "synthetic"] = "synthetic" if order.synthetic else "human"
+    if row is None:
+        return Reacher(subject, source, kind)
+    return Reacher(row.subject, source, kind, row.width_m)
+
+
+def _read_people(path: Path) -> dict[str, _Row]:
+    """Read a CSV with the columns file, subject and, optionally, width_m."""
+    reader = csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig")))
+    missing = [name for name in ("file", "subject") if name not in (reader.fieldnames or ())]
+    if missing:
+        raise ValueError(
+            f"{path}: has no column {' and '.join(missing)}; it needs file, subject and,"
+            " optionally, width_m."
+        )
+    rows: dict[str, _Row] = {}
+    for row in reader:
+        file, subject = (row["file"] or "").strip(), (row["subject"] or "").strip()
+        width = (row.get("width_m") or "").strip()
+        if not file or not subject:
+            raise ValueError(f"{path}, line {reader.line_num}: a file or a subject is missing.")
+        try:
+            width_m = float(width) if width else None
+        except ValueError:
+            raise ValueError(
+                f"{path}, line {reader.line_num}: width_m is {width!r}, not a number."
+            ) from None
+        rows[file] = _Row(subject, width_m)
+    return rows
+
+
+def _ends_with(path: Path, name: str) -> bool:
+    """Return whether a path ends with a name, of one part or of several."""
+    parts = Path(name).parts
+    return path.parts[-len(parts) :] == parts
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(names[:_NAMES_SHOWN]) + (", ..." if len(names) > _NAMES_SHOWN else "")
