@@ -22,9 +22,12 @@ from app.science.rotations import FloatArray
 from app.science.simulation import (
     Build,
     LoopedFingers,
+    MovementTraits,
+    ReachingPeople,
     SimulatedFingers,
     SimulatedParticipant,
     draw_build,
+    draw_traits,
     idle_movement,
     pointing,
 )
@@ -142,12 +145,16 @@ class Person:
 
 
 def make_person(
-    rng: np.random.Generator, capture: Path | None, *, with_fingers: bool = False
+    rng: np.random.Generator,
+    capture: Path | None,
+    *,
+    with_fingers: bool = False,
+    reaching: ReachingPeople | None = None,
 ) -> Person:
     """Make a participant that moves like `capture`, or synthetically; raise UnusableCapture.
 
     `with_fingers`: with the fingers of the capture or, if it has none, generated ones, and an index
-    finger that points.
+    finger that points. `reaching`: how people reach, as recorded ones do; None for the constants.
     """
     build = draw_build(rng)
     skeleton = build_skeleton(build.stature_m)
@@ -160,7 +167,10 @@ def make_person(
         build=build,
         skeleton=skeleton,
         participant=SimulatedParticipant(
-            pointing(skeleton) if with_fingers else skeleton, movement, rng
+            pointing(skeleton) if with_fingers else skeleton,
+            movement,
+            rng,
+            traits=None if reaching is None else _reaching_traits(reaching, rng),
         ),
     )
     if not with_fingers:
@@ -170,6 +180,11 @@ def make_person(
         return replace(person, fingers=LoopedFingers(fingers, FRAME_RATE_HZ, offset_s))
     # A generator of their own, so that a person's body moves the same with and without fingers.
     return replace(person, fingers=SimulatedFingers(rng.spawn(1)[0]))
+
+
+def _reaching_traits(reaching: ReachingPeople, rng: np.random.Generator) -> MovementTraits:
+    """Draw traits of somebody who reaches as recorded people do."""
+    return replace(draw_traits(rng), reaching=reaching.person(rng))
 
 
 def _looped(

@@ -17,7 +17,7 @@ import numpy as np
 from app.protocol import Step, StudyProtocol, compile_plan, ledger_block, sequences
 from app.science.avatar.configuration import DEFAULT_OPTIONS, without_parts
 from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
-from app.science.simulation import Build, Goal
+from app.science.simulation import Build, Goal, ReachingPeople
 from app.science.skeleton import FINGER_PARTS
 from app.science.tasks import (
     CommandKind,
@@ -81,7 +81,8 @@ class Visit:
     """One simulated person's visit.
 
     `failure` says why the visit ended early; its phases up to there are kept. `simulated_s`: the
-    time that passed for the person.
+    time that passed for the person. `reaches`: how many movements of hands were drawn from
+    recordings, and how many of them over a distance that was not recorded; None without recordings.
     """
 
     number: int
@@ -90,6 +91,7 @@ class Visit:
     phases: tuple[PhaseOutcome, ...]
     failure: str | None
     simulated_s: float
+    reaches: tuple[int, int] | None = None
 
 
 def avatar_kind_of(study: StudyProtocol) -> AvatarKind:
@@ -107,6 +109,7 @@ def simulate_visit(
     seed: int,
     kind: AvatarKind,
     pause: Callable[[], None] = no_pause,
+    reaching: ReachingPeople | None = None,
 ) -> Visit:
     """Simulate the task phases of one person.
 
@@ -120,9 +123,10 @@ def simulate_visit(
             are one piece each and longer steps (`WITHOUT_FINGERS_STEP_S`), at half the cost.
             `delayed_copy`: a copy that passes through boxes.
         pause: called between frames, for who has to wait while others need the processor.
+        reaching: how people reach, fitted to recordings; None for the simulation's constants.
     """
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
-    person = make_person(rng, None)
+    person = make_person(rng, None, reaching=reaching)
     length = len(sequences(study))
     order = ledger_block(study, number // length)[number % length].sequence
     steps = [step for step in compile_plan(study, order) if step.kind == "task"]
@@ -135,7 +139,9 @@ def simulate_visit(
         except EndlessPhaseError as error:
             failure = str(error)
             break
-    return Visit(number, person.build, tuple(order), tuple(phases), failure, room.t_s)
+    own = person.participant.traits.reaching
+    reaches = None if own is None else own.counts
+    return Visit(number, person.build, tuple(order), tuple(phases), failure, room.t_s, reaches)
 
 
 class _Room:

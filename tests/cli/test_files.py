@@ -42,6 +42,7 @@ READ: dict[str, tuple[str, ...]] = {
     "pilot merge records": (MISSING,),
     "pilot merge assumptions": ("cohort.jsonl", "--assumptions", MISSING),
     "pilot cohort assumptions": ("reembodiment-latency", "--assumptions", MISSING),
+    "pilot cohort reaching": ("reembodiment-latency", "--reaching", MISSING),
     "pilot check scene": ("reembodiment-latency", "--scene", MISSING),
     "tracking align headset": (MISSING, MISSING),
     "tracking align tracker": ("head.csv", MISSING),

@@ -53,10 +53,20 @@ def cohort(
             "; else as the study has it."
         ),
     ] = None,
+    reaching: Annotated[
+        Path | None,
+        typer.Option(help="File that `reach fit` wrote: hands then move as recorded ones did."),
+    ] = None,
     as_json: _Json = False,
 ) -> None:
     """Simulate whole visits: reach, completions, contacts, length, storage and power."""
-    from app.cli.pilot.inputs import read_assumptions, read_avatar, read_shard, read_study
+    from app.cli.pilot.inputs import (
+        read_assumptions,
+        read_avatar,
+        read_hands,
+        read_shard,
+        read_study,
+    )
     from app.cli.pilot.output import report_json, report_text
     from app.cli.pilot.run import CohortOptions, carry_out_cohort, full_report
     from app.features.results.pilot.simulation import CohortOrder, Sharing
@@ -64,7 +74,7 @@ def cohort(
     with reported(ValueError, OSError), Activity(f"simulating {study}: reading it") as now:
         options = CohortOptions(
             study=study,
-            order=CohortOrder(participants, seed, read_avatar(avatar)),
+            order=CohortOrder(participants, seed, read_avatar(avatar), read_hands(reaching)),
             sharing=Sharing(workers, read_shard(shard)),
             out=out,
         )

@@ -14,6 +14,7 @@ from app.protocol import (
     load_study,
 )
 from app.resources import study_configs_dir
+from app.science.reaching import FittedReaching
 
 MOST_WORKERS = 64
 _COUNTS = re.compile(r"\d+(,\d+)*")
@@ -77,6 +78,19 @@ def read_counts(given: list[str]) -> tuple[int, ...]:
         if not _COUNTS.fullmatch(one):
             raise ValueError(f"--participants {one}: give numbers, as in 12 or 8,12,16")
     return tuple(int(number) for one in given for number in one.split(","))
+
+
+def read_hands(given: Path | None) -> FittedReaching | None:
+    """Read how hands move, a file that `reach fit` wrote; None for the simulation's constants.
+
+    Raises ValueError if it is none, OSError.
+    """
+    if given is None:
+        return None
+    # Its science is loaded only where it is wanted.
+    from app.adapters.reaching_file import read_reaching
+
+    return read_reaching(given)
 
 
 def read_shard(given: str | None) -> tuple[int, int]:

@@ -12,6 +12,7 @@ from app.features.results.pilot.simulation import (
     failures_of,
     paragraphs,
     reach_sentence,
+    reaching_lines,
     report_data,
 )
 from app.science.pilot import PowerPoint, smallest_sufficient
@@ -56,6 +57,8 @@ def _report_lines(report: CohortReport) -> Iterator[str]:
     yield f"sha256 {cohort.sha256}; visits that could not be completed: {failures_of(cohort)}"
     if cohort.real_time_factor is not None:
         yield f"{cohort.real_time_factor:.1f} s of visits for each second of processor time"
+    if recorded := header.get("reaching"):
+        yield from reaching_lines(recorded, cohort.visits)
     for visit in cohort.visits:
         if visit.failure is not None:
             yield f"  person {visit.number}: {visit.failure}"

@@ -37,6 +37,7 @@ from app.features.results.pilot.simulation.power import (
     merged_curve,
     simulate_power,
 )
+from app.features.results.pilot.simulation.recorded_reaching import reaching_lines
 from app.features.results.pilot.simulation.report import (
     PUBLISHED,
     CohortReport,
@@ -83,6 +84,7 @@ __all__ = [
     "paragraphs",
     "preregistration_texts",
     "reach_sentence",
+    "reaching_lines",
     "report_data",
     "report_on",
     "simulate_cohort",

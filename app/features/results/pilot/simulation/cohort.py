@@ -17,8 +17,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from app.features.results.pilot.simulation.plan import PilotStudy, Progress, Sharing, Tell
+from app.features.results.pilot.simulation.recorded_reaching import reaching_header
 from app.platform.workers import end_with_parent
 from app.protocol import StudyProtocol
+from app.science.reaching import FittedReaching
 from app.science.simulation import Build
 from app.simulated_people.visits import (
     AvatarKind,
@@ -36,11 +38,16 @@ Header = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class CohortOrder:
-    """Who is simulated; `avatar` is that of the study if it is None."""
+    """Who is simulated.
+
+    `avatar` is that of the study if it is None. `reaching`: how people reach, fitted to recordings;
+    None for the simulation's constants.
+    """
 
     participants: int
     seed: int
     avatar: AvatarKind | None = None
+    reaching: FittedReaching | None = None
 
 
 @dataclass(frozen=True)
@@ -63,7 +70,7 @@ class Cohort:
     @property
     def sha256(self) -> str:
         """The SHA-256 of the header and of all visits, as the record has them."""
-        lines = [self.header, *map(asdict, self.visits)]
+        lines = [self.header, *map(_plain, self.visits)]
         return hashlib.sha256("".join(map(_line, lines)).encode()).hexdigest()
 
 
@@ -94,6 +101,8 @@ def simulate_cohort(
         "participants": order.participants,
         "seed": order.seed,
         "avatar": kind,
+        # Without recordings the record stays what it was, with the hash that it had.
+        **({} if order.reaching is None else {"reaching": reaching_header(order.reaching)}),
     }
     part, parts = sharing.shard
     own = range(part, order.participants, parts)
@@ -101,14 +110,14 @@ def simulate_cohort(
     missing = own[len(done) :]
     processor_s = 0.0
     tell(Progress("people", len(done), len(own)))
-    cast = _Cast(protocol, order.seed, kind, pause)
+    cast = _Cast(protocol, order.seed, kind, pause, order.reaching)
     with _computing(sharing.workers, cast) as compute:
         for visit, used_s in compute(missing):
             done.append(visit)
             processor_s += used_s
             if record is not None:
                 with record.open("a", encoding="utf-8") as file:
-                    file.write(_line(asdict(visit)))
+                    file.write(_line(_plain(visit)))
             tell(Progress("people", len(done), len(own)))
     simulated_s = sum(visit.simulated_s for visit in done[len(done) - len(missing) :])
     factor = simulated_s / processor_s if missing else None
@@ -159,6 +168,14 @@ def _continued(path: Path, header: Header, own: Sequence[int]) -> list[Visit]:
     return []
 
 
+def _plain(visit: Visit) -> dict[str, Any]:
+    """Return a visit as its line has it: reaches are named only if they are of recordings."""
+    plain = asdict(visit)
+    if visit.reaches is None:
+        del plain["reaches"]
+    return plain
+
+
 def _line(one: Mapping[str, Any]) -> str:
     return f"{json.dumps(one)}\n"
 
@@ -182,6 +199,9 @@ def _read(path: Path) -> tuple[Header, list[Visit], int]:
 def _visit(one: dict[str, Any]) -> Visit:
     phases = tuple(PhaseOutcome(**phase) for phase in one["phases"])
     changed = {"build": Build(**one["build"]), "order": tuple(one["order"]), "phases": phases}
+    if one.get("reaches") is not None:
+        drawn, outside = one["reaches"]
+        changed["reaches"] = (int(drawn), int(outside))
     return Visit(**{**one, **changed})
 
 
@@ -190,7 +210,7 @@ def _require_same(header: Header, found: Header, path: Path) -> None:
     if differing:
         raise ValueError(
             f"{path} is of another cohort: it differs in {', '.join(differing)}. Use the same "
-            "study, seed, avatar and number, or another file"
+            "study, seed, avatar, number and file of reaching, or another file"
         )
 
 
@@ -205,11 +225,12 @@ class _Cast:
     seed: int
     kind: AvatarKind
     pause: Callable[[], None] = no_pause
+    reaching: FittedReaching | None = None
 
     def visit(self, number: int) -> tuple[Visit, float]:
         """Simulate one visit; return it with the processor time that it took."""
         began_s = time.process_time()
-        visit = simulate_visit(self.study, number, self.seed, self.kind, self.pause)
+        visit = simulate_visit(self.study, number, self.seed, self.kind, self.pause, self.reaching)
         return visit, time.process_time() - began_s
 
 
@@ -220,7 +241,7 @@ def _computing(workers: int, cast: _Cast) -> Iterator[_Compute]:
         return
     # Spawned, because a fork would copy the threads of the progress display half.
     context = multiprocessing.get_context("spawn")
-    own = _Cast(cast.study, cast.seed, cast.kind)
+    own = _Cast(cast.study, cast.seed, cast.kind, reaching=cast.reaching)
     with ProcessPoolExecutor(
         workers, mp_context=context, initializer=_begin, initargs=(own,)
     ) as pool:

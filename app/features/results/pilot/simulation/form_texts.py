@@ -102,6 +102,13 @@ _ANOTHER_AVATAR: Final = Words(
     en=" They acted through another avatar ({{used}}) than the study's own ({{own}}).",
     de=" Sie handelten mit einem anderen Avatar ({{used}}) als dem der Studie ({{own}}).",
 )
+_AS_RECORDED: Final = Words(
+    en=" Their hands moved as recorded ones did (reaches: {{reaches}}, people: {{people}}{{made}}; "
+    "SHA-256 {{sha256}}).",
+    de=" Ihre Hände bewegten sich wie aufgezeichnete (Armbewegungen: {{reaches}}, Menschen: "
+    "{{people}}{{made}}; SHA-256 {{sha256}}).",
+)
+_SYNTHETIC: Final = Words(en="; synthetic", de="; künstlich")
 _STORAGE: Final = Words(
     en="The movement recorded of one person takes about {{size}} MB. These figures come from a "
     "simulation and say nothing about how people will feel.",
@@ -115,7 +122,8 @@ class Rehearsed:
     """What the text for the ethics form says of a cohort.
 
     `title`: that of the study, by language. `used` and `own`: the avatar of the simulation and that
-    of the study. `session_min` includes `walk_back_min`.
+    of the study. `session_min` includes `walk_back_min`. `reaching`: what the record says of
+    recorded hands, None without them.
     """
 
     title: Mapping[str, str]
@@ -128,6 +136,7 @@ class Rehearsed:
     walk_back_min: float
     storage_mb: float
     reached: Sequence[Reached]
+    reaching: Mapping[str, Any] | None = None
 
 
 def ethics_texts(rehearsed: Rehearsed) -> Texts:
@@ -173,6 +182,10 @@ def _ethics(one: Rehearsed, language: str) -> str:
     if one.used != one.own:
         used, own = (_AVATARS[kind].in_language(language) for kind in (one.used, one.own))
         people += _filled(_ANOTHER_AVATAR, language, used=used, own=own)
+    if one.reaching is not None:
+        recorded = {key: one.reaching[key] for key in ("reaches", "people", "sha256")}
+        made = _SYNTHETIC.in_language(language) if one.reaching["synthetic"] else ""
+        people += _filled(_AS_RECORDED, language, made=made, **recorded)
     storage = _filled(_STORAGE, language, size=_number(one.storage_mb, 0, language))
     return f"{visit}. {people} {reach_sentence(one.reached, language)} {storage}"
 

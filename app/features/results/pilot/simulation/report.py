@@ -18,6 +18,10 @@ from app.features.results.pilot.simulation.form_texts import (
 )
 from app.features.results.pilot.simulation.plan import PilotStudy
 from app.features.results.pilot.simulation.power import Curve
+from app.features.results.pilot.simulation.recorded_reaching import (
+    reaching_assumptions,
+    reaching_data,
+)
 from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
 from app.science.statistics import FloatArray
 from app.simulated_people.visits import AvatarKind, PhaseOutcome, Visit, avatar_kind_of
@@ -107,6 +111,7 @@ def form_texts(report: CohortReport) -> Mapping[str, Texts]:
         walk_back_min=report.walk_back_min,
         storage_mb=report.storage_mb,
         reached=report.reached,
+        reaching=header.get("reaching"),
     )
     return {
         "ethics": ethics_texts(rehearsed),
@@ -122,6 +127,8 @@ def paragraphs(report: CohortReport) -> Mapping[str, str]:
 def report_data(report: CohortReport) -> dict[str, Any]:
     """Return the report as plain data, the JSON of `reembody pilot`."""
     header, curve = report.cohort.header, report.power
+    recorded = header.get("reaching")
+    assumed = [] if curve is None else curve.header["assumptions"]
     return {
         "simulated": True,
         "study": header["study"],
@@ -144,8 +151,10 @@ def report_data(report: CohortReport) -> dict[str, Any]:
         "walk_back_min": report.walk_back_min,
         "storage_mb": report.storage_mb,
         "power": [] if curve is None else [asdict(one) for one in curve.points],
-        "assumptions": [] if curve is None else curve.header["assumptions"],
+        "assumptions": [*assumed, *(reaching_assumptions(recorded) if recorded else ())],
         "paragraphs": dict(paragraphs(report)),
+        # Only a cohort whose hands move as recorded has these figures.
+        **({"reaching": reaching_data(recorded, report.cohort.visits)} if recorded else {}),
     }
 
 
