@@ -29,6 +29,7 @@ from app.clock import Clock
 from app.features.movement.avatar import NewAvatar, create_avatar
 from app.protocol.avatar import file_of
 from app.science.avatar.mjcf import default_configuration
+from app.science.reaching import Reacher
 from app.science.retargeting import reference_avatar
 from app.science.walking.synthetic import POPULATIONS, person_of, straight_path, walk_along
 from tests.benchmarks.__main__ import NAMES, parser
@@ -38,6 +39,7 @@ from tests.features.lab import Lab as RunningLab
 from tests.features.lab import running_lab
 from tests.rehearsal.performed import STUDY, Lengths
 from tests.science.alignment.rooms import OPTICAL, looking_around, recorded, some_room
+from tests.science.reaching.reachers import Planted, as_tracker_file, hand_of
 from tests.science.retargeting.walks import made_walk
 from tests.support.lan import LanServer
 from tests.support.server import ADMIN_PASSWORD, LiveServer, free_port
@@ -76,6 +78,7 @@ class Lab:
             r"02_01\.amc": self._amc,
             r"data\.csv": self._tidy,
             r"walks/": self._walks,
+            r"reaches/": self._reaches,
             r"headset\.csv": self._two_systems,
             r"answers\.csv": self._answers,
             r"my-scene\.yaml": self._scene,
@@ -116,6 +119,16 @@ class Lab:
                 rows = [f"{number},{t:.4f},{x:.4f},{y:.4f},{load_kg}" for t, (x, y) in moments]
                 text = _table("subject,time_s,x_m,y_m,load_kg", rows)
                 (folder / f"walker-{number}-{length:g}.csv").write_text(text)
+
+    def _reaches(self) -> None:
+        (self.folder / "reaches").mkdir()
+        (self.folder / "hands.csv").write_text(
+            _table("file,subject,width_m", [f"{at}.csv,P{at},0.1" for at in range(3)])
+        )
+        for at in range(3):
+            rng = np.random.default_rng((6, at))
+            track = hand_of(Planted(1.0 + 0.2 * at), Reacher("", ""), rng, count=6)
+            (self.folder / "reaches" / f"{at}.csv").write_text(as_tracker_file(track))
 
     def _two_systems(self) -> None:
         rng = np.random.default_rng(3)
