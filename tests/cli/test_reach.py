@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app.science.reaching import Reacher
+from tests.cli.exported_samples import as_samples, poses_of_reaches
 from tests.cli.invoked import Invoked
 from tests.science.reaching.reachers import Planted, as_tracker_file, hand_of
 
@@ -134,3 +135,25 @@ def test_unusable_input_is_refused(
     monkeypatch.chdir(lab)
     assert said in _COMMAND.refusal(*arguments)
     assert not (lab / "x.npz").exists()
+
+
+def test_the_simulations_own_reaches_have_the_tempo_that_it_was_given(tmp_path: Path) -> None:
+    """Whole bodies that the simulation moved, exported and read again, have their planted tempos.
+
+    They lean, are noisy and correct what they see, which the agent does not.
+    """
+    rows = ["file,subject,width_m,stature_m"]
+    for at, tempo in enumerate((1.0, 1.5)):
+        (tmp_path / f"{at}.csv").write_text(as_samples(poses_of_reaches(at, 12, tempo)))
+        rows.append(f"{at}.csv,P{at},0.1,1.75")
+    (tmp_path / "people.csv").write_text("\n".join(rows) + "\n")
+    found = _fit(tmp_path, "reaching.npz", "--people", tmp_path / "people.csv")
+    assert found["synthetic"] == found["reaches"] >= 16
+    assert list(found["levels"].values()) == pytest.approx([1.0, 1.5], rel=0.15)
+
+
+def test_samples_of_an_export_need_a_stature(tmp_path: Path) -> None:
+    """Rotations do not say where a hand is, and the message says what to give."""
+    (tmp_path / "session.csv").write_text(as_samples(poses_of_reaches(1, 1)))
+    said = _COMMAND.refusal("fit", tmp_path / "session.csv", "--out", tmp_path / "x.npz")
+    assert "give the person's stature_m in the table of --people" in said

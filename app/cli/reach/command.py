@@ -21,12 +21,14 @@ _Model = Annotated[Path, typer.Argument(help="A file that `reach fit` wrote.")]
 @reach.command()
 def fit(
     recordings: Annotated[
-        list[Path], typer.Argument(help="Captures of any format in which hands were tracked.")
+        list[Path], typer.Argument(help="Captures with hands, or samples of an export.")
     ],
     out: Annotated[Path, typer.Option(help="File to write.")],
     people: Annotated[
         Path | None,
-        typer.Option(help="CSV: file, subject, and width_m where the targets' width is known."),
+        typer.Option(
+            help="CSV: file, subject; width_m of targets where known, stature_m for samples."
+        ),
     ] = None,
     hand: Annotated[
         str | None,

@@ -3,12 +3,13 @@
 import csv
 import io
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
 from app.adapters.captures import CaptureError, read_capture_file
+from app.adapters.session_samples import HANDS, is_session_samples, read_session_samples
 from app.science.reaching import (
     HandTrack,
     NoReach,
@@ -49,6 +50,7 @@ class _Row:
 
     subject: str
     width_m: float | None
+    stature_m: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +87,10 @@ def read_reaches(order: HandsOrder, rules: ReachRules) -> RecordedReaches:
         who = _reacher(path, None if key is None else people[key], order)
         if key is None:
             found.named_by_file.add(who.subject)
-        tracks = _hands(path, who, order.hand)
+        if is_session_samples(path):
+            tracks = _hands_of_session(path, who, None if key is None else people[key].stature_m)
+        else:
+            tracks = _hands(path, who, order.hand)
         if not tracks:
             found.notices.append(f"{who.source}: no hand moves")
         for track in tracks:
@@ -116,6 +121,24 @@ def _hands(path: Path, who: Reacher, hand: str | None) -> list[HandTrack]:
         raise ValueError(str(error)) from error
 
 
+def _hands_of_session(path: Path, who: Reacher, stature_m: float | None) -> list[HandTrack]:
+    """Return the hands of a session that the product exported, one track for each phase."""
+    if stature_m is None:
+        raise ValueError(
+            f"{path}: an export of samples has rotations, and where hands are depends on the body:"
+            " give the person's stature_m in the table of --people."
+        )
+    session = read_session_samples(path, stature_m)
+    if session.simulated:
+        who = replace(who, kind="synthetic")
+    return [
+        HandTrack(phase.times_s, phase.tips_m[:, side], f"phase {phase.phase_id}, {hand}", who,
+                  phase.hips_m)
+        for phase in session.phases
+        for side, hand in enumerate(HANDS)
+    ]  # fmt: skip
+
+
 def _reacher(path: Path, row: _Row | None, order: HandsOrder) -> Reacher:
     """Return whose recording it is: by the table, by a folder of UXF, or else by its name."""
     parts = path.parts
@@ -132,28 +155,33 @@ def _reacher(path: Path, row: _Row | None, order: HandsOrder) -> Reacher:
 
 
 def _read_people(path: Path) -> dict[str, _Row]:
-    """Read a CSV with the columns file, subject and, optionally, width_m."""
+    """Read a CSV with the columns file, subject and, optionally, width_m and stature_m."""
     reader = csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig")))
     missing = [name for name in ("file", "subject") if name not in (reader.fieldnames or ())]
     if missing:
         raise ValueError(
             f"{path}: has no column {' and '.join(missing)}; it needs file, subject and,"
-            " optionally, width_m."
+            " optionally, width_m and stature_m."
         )
     rows: dict[str, _Row] = {}
     for row in reader:
         file, subject = (row["file"] or "").strip(), (row["subject"] or "").strip()
-        width = (row.get("width_m") or "").strip()
         if not file or not subject:
             raise ValueError(f"{path}, line {reader.line_num}: a file or a subject is missing.")
-        try:
-            width_m = float(width) if width else None
-        except ValueError:
-            raise ValueError(
-                f"{path}, line {reader.line_num}: width_m is {width!r}, not a number."
-            ) from None
-        rows[file] = _Row(subject, width_m)
+        where = f"{path}, line {reader.line_num}"
+        width_m, stature_m = (_metres(row, name, where) for name in ("width_m", "stature_m"))
+        if stature_m is not None and not 0.5 <= stature_m <= 2.6:
+            raise ValueError(f"{where}: stature_m is {stature_m:g}; give metres, 0.5 to 2.6.")
+        rows[file] = _Row(subject, width_m, stature_m)
     return rows
+
+
+def _metres(row: Mapping[str, str | None], name: str, where: str) -> float | None:
+    cell = (row.get(name) or "").strip()
+    try:
+        return float(cell) if cell else None
+    except ValueError:
+        raise ValueError(f"{where}: {name} is {cell!r}, not a number.") from None
 
 
 def _ends_with(path: Path, name: str) -> bool:
