@@ -150,6 +150,8 @@ def test_the_simulations_own_reaches_have_the_tempo_that_it_was_given(tmp_path: 
     found = _fit(tmp_path, "reaching.npz", "--people", tmp_path / "people.csv")
     assert found["synthetic"] == found["reaches"] >= 16
     assert list(found["levels"].values()) == pytest.approx([1.0, 1.5], rel=0.15)
+    assert all("use phases in which hands reach freely" in one for one in found["notices"])
+    assert len(found["notices"]) == 2
 
 
 def test_samples_of_an_export_need_a_stature(tmp_path: Path) -> None:

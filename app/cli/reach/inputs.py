@@ -25,6 +25,10 @@ from app.science.rig import RigError, RigMotion
 
 _UXF_SESSION = re.compile(r"S\d{3,}")
 _NAMES_SHOWN = 6
+_BOXES = (
+    "at boxes a hand goes out, along and in, and what is found are parts of its way, quicker than"
+    " the whole; use phases in which hands reach freely"
+)
 
 
 @dataclass(frozen=True)
@@ -61,7 +65,7 @@ class RecordedReaches:
         reaches: in the order of the files.
         left_out: movements that are no reaches.
         named_by_file: people who are only known by the names of their files or folders.
-        notices: recordings that were given twice, or in which no hand moves.
+        notices: recordings that were given twice, in which no hand moves, or that are doubtful.
     """
 
     reaches: list[Reach] = field(default_factory=list)
@@ -89,6 +93,7 @@ def read_reaches(order: HandsOrder, rules: ReachRules) -> RecordedReaches:
             found.named_by_file.add(who.subject)
         if is_session_samples(path):
             tracks = _hands_of_session(path, who, None if key is None else people[key].stature_m)
+            found.notices.append(f"{who.source}: {_BOXES}")
         else:
             tracks = _hands(path, who, order.hand)
         if not tracks:
