@@ -14,7 +14,7 @@ from app.adapters.walks.model_file import write_model
 from app.features.movement.walking.progress import RECORD_BYTES, FitFolder
 from app.features.movement.walking.reading import planned_walks, walk_name
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
-from app.features.movement.walking.summaries import model_summary
+from app.features.movement.walking.summaries import model_summary, scene_counts
 from app.science.walking.following import SteeringFollower
 from app.science.walking.maps import (
     PAPER,
@@ -59,7 +59,8 @@ def fit(store: Store, order: FitOrder, folder: Path) -> Json:
         options = FitOptions(order.seed, order.k, order.entries, READINGS[order.reading])
         found = fitted(database, options)
         digest = write_model(files.model, found, follower.rules)
-        return model_summary(found, digest) | {"left_out_walks": left_out}
+        walked = {"left_out_walks": left_out, "scenes": scene_counts(entries)}
+        return model_summary(found, digest) | walked
     except WalkingError as error:
         raise Cannot(str(error)) from None
 

@@ -37,16 +37,19 @@ def walks_summary(entries: Sequence[PlannedWalk]) -> Json:
         "dependencies": ranges,
         "missing_dependencies": [name for name in names if name not in everywhere],
         "census": asdict(census([entry.path.length_m for entry in entries])),
-        "scenes": [
-            {"key": key, "walks": count}
-            for key, count in Counter(walk.scene for walk in walks).most_common()
-        ],
+        "scenes": scene_counts(entries),
         "numbers": _numbers(walks),
         "changing_numbers": sorted(
             {name for walk in walks for name in walk.changing}
             - {name for walk in walks for name in walk.others}
         ),
     }
+
+
+def scene_counts(entries: Sequence[PlannedWalk]) -> list[Json]:
+    """Return a `WalksInScene` for each scene that walks name, and for those that name none."""
+    counts = Counter(entry.walk.scene for entry in entries)
+    return [{"key": key, "walks": count} for key, count in counts.most_common()]
 
 
 def _numbers(walks: Sequence[Walk]) -> Json:

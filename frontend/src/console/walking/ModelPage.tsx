@@ -100,7 +100,12 @@ function About({ model }: { readonly model: Model }): JSX.Element {
         ? "walking.model.scene.own"
         : "walking.model.scene.open",
     );
-  const walked = model.walk_set.scenes ?? [];
+  const ordered = model.walk_set.scenes ?? [];
+  const titles = new Map(ordered.map(({ key, title }) => [key, title]));
+  // Once fitted, the walks that are used, without those that were left out.
+  const walked =
+    summary?.scenes?.map((one) => ({ ...one, title: titles.get(one.key) ?? one.key ?? "" })) ??
+    ordered;
   const facts: (readonly [string, string])[] = [
     [t("walking.fact.on"), model.walk_set.title],
     [
@@ -243,13 +248,15 @@ function PredictedDurations({ summary }: { readonly summary: Summary }): JSX.Ele
               })}
             </tbody>
           </table>
-          {needless.map((what) => (
-            <Notice key={what} tone="warn">
-              {t("walking.predicted.needless", { what })}
-            </Notice>
-          ))}
           {!given && (
             <p className={classes.soft}>{t("walking.predicted.noInterval", { why: noInterval })}</p>
+          )}
+          {needless.length > 0 && (
+            <div className={classes.after}>
+              <Notice tone="warn">
+                {t("walking.predicted.needless", { what: needless.join(", ") })}
+              </Notice>
+            </div>
           )}
         </>
       )}

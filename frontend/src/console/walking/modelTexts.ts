@@ -85,7 +85,7 @@ export const walkingModelEn = {
     "Too few people to leave any out: with two, one is left to learn from. How well this model predicts others is not known.",
   "walking.predicted.without": "mixed without {{what}}",
   "walking.predicted.needless":
-    "People who were left out are predicted no better with {{what}} than without: a model without it serves these walks as well.",
+    "No help here: {{what}}. People who were left out are predicted as well without it, so a simpler model serves these walks.",
   "walking.predicted.range": "{{value}} ({{from}} to {{to}})",
   "walking.predicted.noInterval": "No interval: {{why}}.",
   "walking.census": "How long the paths are",
@@ -179,7 +179,7 @@ export const walkingModelDe: Readonly<Record<keyof typeof walkingModelEn, string
     "Zu wenige Personen, um jemanden auszulassen: Bei zweien bleibt eine zum Lernen. Wie gut dieses Modell andere vorhersagt, ist nicht bekannt.",
   "walking.predicted.without": "mixed ohne {{what}}",
   "walking.predicted.needless":
-    "Ausgelassene Personen werden mit {{what}} nicht besser vorhergesagt als ohne: Ein Modell ohne diese Angabe genügt für diese Gänge.",
+    "Hilft hier nicht: {{what}}. Ausgelassene Personen werden ohne diese Angabe ebenso gut vorhergesagt; ein einfacheres Modell genügt für diese Gänge.",
   "walking.predicted.range": "{{value}} ({{from}} bis {{to}})",
   "walking.predicted.noInterval": "Kein Intervall (Wortlaut des Servers): {{why}}.",
   "walking.census": "Wie lang die Wege sind",

@@ -8388,7 +8388,8 @@ export interface components {
          * @description The summary of a fitted model; `model_hash` is the hash in its file.
          *
          *     `predicted` is null for models fitted before it was computed, and empty for fewer than three
-         *     people. `left_out_walks`: walks that lack one of the numbers on which the model depends.
+         *     people. `left_out_walks`: walks that lack one of the numbers on which the model depends; the
+         *     others are counted in `scenes`.
          */
         readonly ModelSummary: {
             readonly census: components["schemas"]["CensusView"];
@@ -8418,6 +8419,11 @@ export interface components {
             readonly reading: components["schemas"]["ReadingView"];
             /** Readings */
             readonly readings: readonly components["schemas"]["ReadingScoreView"][];
+            /**
+             * Scenes
+             * @default []
+             */
+            readonly scenes: readonly components["schemas"]["WalksInScene"][];
             /** Static Vector */
             readonly static_vector: readonly number[];
             /** Walks */

@@ -143,6 +143,7 @@ def test_walks_without_the_number_are_left_out_by_name(walking_lab: Lab) -> None
     walks = ok(upload_tracks(walking_lab, data))
     model = fitted(walking_lab, walks["id"], depends_on=["load_kg"])
     assert model["summary"]["walks"] == 8
+    assert model["summary"]["scenes"] == [{"key": None, "walks": 8}]
     (left_out,) = model["summary"]["left_out_walks"]
     assert left_out["walk"] == "walk 5, of P1 (tracks.csv)"
     assert "load_kg changes from 1 to 3 during it" in left_out["reason"]

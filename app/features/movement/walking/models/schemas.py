@@ -18,6 +18,7 @@ from app.features.movement.walking.schemas import (
     Stage,
     State,
     Stature,
+    WalksInScene,
 )
 from app.science.walking.evaluation import reason_for_no_interval
 from app.science.walking.records import MOST_FURTHER
@@ -119,7 +120,8 @@ class ModelSummary(BaseModel):
     """The summary of a fitted model; `model_hash` is the hash in its file.
 
     `predicted` is null for models fitted before it was computed, and empty for fewer than three
-    people. `left_out_walks`: walks that lack one of the numbers on which the model depends.
+    people. `left_out_walks`: walks that lack one of the numbers on which the model depends; the
+    others are counted in `scenes`.
     """
 
     model_hash: str
@@ -137,6 +139,7 @@ class ModelSummary(BaseModel):
     predicted: list[PredictedView] | None = None
     census: CensusView
     left_out_walks: list[LeftOutWalk] = []
+    scenes: list[WalksInScene] = []
 
 
 class WalkedScene(BaseModel):
