@@ -5,7 +5,9 @@ forms agree to the last bit where both use only + - * / and square roots. It rel
 interpreter's lock, so several threads can run compiled code in parallel.
 
 `compiled_fused` allows fused multiply-add, for code that runs at every frame. Sums keep their order
-here too, so that equal frames give equal results.
+here too, so that equal frames give equal results within a process. What is fused depends on what
+else a function is compiled with: the process that compiles and one that loads its code may differ
+in the last digit. So nothing that has to be repeated to the bit may use it.
 
 `compiled_checked` checks every index, for code that reads data from strangers: it raises an
 IndexError instead of reading outside the array.

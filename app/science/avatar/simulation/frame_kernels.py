@@ -7,7 +7,7 @@ import numpy as np
 
 from app.science import rotations
 from app.science.avatar.mjcf import IndexArray
-from app.science.compiled import compiled, compiled_fused, compiled_inside
+from app.science.compiled import compiled, compiled_inside
 from app.science.rotations import FloatArray, Quaternion, Vector
 
 q_blend = compiled_inside(rotations.q_blend)
@@ -34,7 +34,7 @@ def hips_way(
     return poses
 
 
-@compiled_fused
+@compiled
 def ramp(
     goal: FloatArray, ranges: FloatArray, command: FloatArray, slots: IndexArray,
     duration_s: float, fastest: float, controls: FloatArray,
@@ -59,7 +59,7 @@ def ramp(
     return last_command, limited
 
 
-@compiled_fused
+@compiled
 def local_rotations(world: FloatArray, parents: IndexArray, rows: IndexArray) -> FloatArray:
     """Return rotations parent^-1 row (n, 4) from bodies' world orientations (B, 4)."""
     rotations = np.empty((rows.shape[0], 4))
@@ -74,7 +74,7 @@ def local_rotations(world: FloatArray, parents: IndexArray, rows: IndexArray) ->
     return rotations
 
 
-@compiled_fused
+@compiled
 def pose(
     world: FloatArray, parents: IndexArray, rows: IndexArray,
     qpos: FloatArray, hinges: IndexArray, command: FloatArray, columns: IndexArray, axes: int,

@@ -28,7 +28,7 @@ from math import acos, atan2, cos, hypot, isfinite, nan, pi, sin
 import numpy as np
 import numpy.typing as npt
 
-from app.science.compiled import compiled_fused
+from app.science.compiled import compiled, compiled_inside
 from app.science.retargeting import IntArray
 from app.science.rotations import FloatArray, Quaternion, Vector, q_multiply
 
@@ -41,20 +41,20 @@ _FARTHEST_RAD = 1.25 * pi
 _STRAIGHT_LIMB = 0.05
 
 
-_product = compiled_fused(q_multiply)
+_product = compiled_inside(q_multiply)
 
 
-@compiled_fused
+@compiled
 def _row(rows: FloatArray, row: int) -> Quaternion:
     return rows[row, 0], rows[row, 1], rows[row, 2], rows[row, 3]
 
 
-@compiled_fused
+@compiled
 def _set_row(rows: FloatArray, row: int, q: Quaternion) -> None:
     rows[row, 0], rows[row, 1], rows[row, 2], rows[row, 3] = q
 
 
-@compiled_fused
+@compiled
 def _in_frame(q: Quaternion, frame: FloatArray, hand: float) -> Quaternion:
     """Return the rotation in the frame of the columns of `frame`; `hand` is its handedness."""
     w, x, y, z = q
@@ -66,7 +66,7 @@ def _in_frame(q: Quaternion, frame: FloatArray, hand: float) -> Quaternion:
     )
 
 
-@compiled_fused
+@compiled
 def _three(q: Quaternion, previous_angles: Vector) -> Vector:
     """Return one of the two solutions for a part with three axes; see the module docstring."""
     w, x, y, z = q
@@ -84,7 +84,7 @@ def _three(q: Quaternion, previous_angles: Vector) -> Vector:
     return a, b, atan2(cosine * r21 + sine * r31, cosine * r22 + sine * r32)
 
 
-@compiled_fused
+@compiled
 def _two(q: Quaternion) -> tuple[float, float, float]:
     """Return both angles of a part with two axes, and the angle by which they miss its rotation."""
     w, x, y, z = q
@@ -93,7 +93,7 @@ def _two(q: Quaternion) -> tuple[float, float, float]:
     return total + difference, total - difference, 2.0 * acos(min(near, 1.0))
 
 
-@compiled_fused
+@compiled
 def _unwrapped(angle: float, previous: float, middle: float) -> float:
     """Add whole turns so that the angle is near the previous one.
 
@@ -106,7 +106,7 @@ def _unwrapped(angle: float, previous: float, middle: float) -> float:
     return near
 
 
-@compiled_fused
+@compiled
 def _choose(
     solution: Vector, hand: float, at: int, low: FloatArray, high: FloatArray,
     previous: FloatArray, margin: float, unclamped: FloatArray,
@@ -132,7 +132,7 @@ def _choose(
             unclamped[at + k] = _unwrapped(hand * solution[k], previous[at + k], middle)
 
 
-@compiled_fused
+@compiled
 def multiply_undriven(rotations: FloatArray, into: IntArray, rows: FloatArray) -> None:
     """Multiply each driven part's rotation by those of the undriven parts above it.
 
@@ -146,7 +146,7 @@ def multiply_undriven(rotations: FloatArray, into: IntArray, rows: FloatArray) -
         _set_row(rows, part, q)
 
 
-@compiled_fused
+@compiled
 def turn_bend_planes(hinges: IntArray, frames: FloatArray, rows: FloatArray) -> None:
     """Turn the bone above each elbow and knee about its own axis until the hinge fits the bend.
 
@@ -167,7 +167,7 @@ def turn_bend_planes(hinges: IntArray, frames: FloatArray, rows: FloatArray) -> 
         _set_row(rows, below, _product(back, _row(rows, below)))
 
 
-@compiled_fused
+@compiled
 def fit(
     rows: FloatArray, columns: IntArray, counts: IntArray, frames: FloatArray, hands: FloatArray,
     low: FloatArray, high: FloatArray, previous: FloatArray, margin: float,
@@ -198,7 +198,7 @@ def fit(
             residual[part] = 2.0 * acos(min(hypot(q[0], q[1]), 1.0))
 
 
-@compiled_fused
+@compiled
 def move_wrist_excess(
     pairs: IntArray, low: FloatArray, high: FloatArray, unclamped: FloatArray
 ) -> None:
@@ -210,7 +210,7 @@ def move_wrist_excess(
         unclamped[wrist] = clamped
 
 
-@compiled_fused
+@compiled
 def follow_frames(
     local: FloatArray, restarts: BoolArray, folded: IntArray, bends: IntArray,
     bend_frames: FloatArray, columns: IntArray, counts: IntArray, frames: FloatArray,
