@@ -2,8 +2,8 @@
  * Build the tablet's page and its service worker after the other pages, into the same folder.
  *
  * A page that is built with the others shares some twenty small files with them, and the participant
- * waits until each was fetched. Built by itself it is one script and one stylesheet, with nothing in
- * them that the tablet does not use.
+ * waits until each was fetched. Built by itself it has two scripts, with nothing in them that the
+ * tablet does not use: a small one that draws a form at once (`tablet/early`), and the application.
  */
 import { resolve } from "node:path";
 import react from "@vitejs/plugin-react";

@@ -1,23 +1,24 @@
-/** The frame of every screen, and the choice of which screen is shown. */
+/** What is in the bar of every screen, and the choice of which screen is shown. */
 import { Button, SegmentedControl } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
 import type { ConsentForm } from "@shared/api/records";
 import type { TabletState } from "@shared/api/types";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { Icon } from "@shared/ui/Icon";
-import { Mark } from "@shared/ui/Mark";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
-import { type JSX, useEffect, useRef } from "react";
+import { type JSX, useEffect, useRef, useState } from "react";
 import callForHelpClasses from "./CallForHelp.module.css";
 import { type Refusal, useRefusal } from "./drafts/refusal";
 import { useSweep } from "./drafts/useStored";
+import { Frame } from "./Frame";
+import classes from "./Frame.module.css";
 import { useTexts } from "./i18n";
-import classes from "./Screens.module.css";
 import { Consent } from "./screens/Consent";
 import { FormScreen } from "./screens/FormScreen";
 import { AnsweredElsewhere, Finished, OnHold, Refused, Waiting } from "./screens/IdleScreens";
 import { Reading } from "./screens/Reading";
-import { useTextSize } from "./textSize";
+import { languageOf } from "./stateInPage";
+import { applySize, chosenSize, nextSize } from "./textSize";
 import { STATE_KEY } from "./useTabletState";
 
 interface ScreensProps {
@@ -33,30 +34,24 @@ export function Screens({ state, connected, show, refresh }: ScreensProps): JSX.
   const content = useFocusOnNewScreen(state, refusal);
   useSweep(state, connected);
   useEffect(() => {
-    const spoken = state.language === "de" ? "de" : "en";
+    const spoken = languageOf(state);
     if (spoken !== language) setLanguage(spoken);
   });
   return (
-    <div className={classes.page}>
-      <header className={classes.bar}>
-        <Mark size={24} />
-        {state.simulated && <span className={classes.simulated}>{t("bar.simulated")}</span>}
-        {!connected && (
-          <span className={classes.offline} role="status">
-            <Icon name="alert" size={18} />
-            {t("bar.offline")}
-          </span>
-        )}
-        <div className={classes.tools}>
+    <Frame
+      simulated={state.simulated ? t("bar.simulated") : null}
+      offline={connected ? null : t("bar.offline")}
+      tools={
+        <>
           <CallForHelp state={state} connected={connected} />
           <TextSizeButton />
           <LanguageChoice state={state} />
-        </div>
-      </header>
-      <main className={classes.content} ref={content} tabIndex={-1}>
-        <Screen {...{ state, connected, show, refresh, refusal }} />
-      </main>
-    </div>
+        </>
+      }
+      content={content}
+    >
+      <Screen {...{ state, connected, show, refresh, refusal }} />
+    </Frame>
   );
 }
 
@@ -127,14 +122,15 @@ function Screen({ state, connected, show, refresh, refusal }: ScreenProps): JSX.
 
 function TextSizeButton(): JSX.Element {
   const { t } = useTexts();
-  const [size, larger] = useTextSize();
+  const [size, setSize] = useState(chosenSize);
+  useEffect(() => applySize(size), [size]);
   return (
     <Button
       size="sm"
       variant="default"
       aria-label={t("bar.textSize", { percent: Math.round(size * 100) })}
       title={t("bar.textSize", { percent: Math.round(size * 100) })}
-      onClick={larger}
+      onClick={() => setSize(nextSize)}
     >
       <span aria-hidden="true" className={classes.letters}>
         A<span>A</span>

@@ -1,11 +1,11 @@
-import "./mantine.css";
-import "./tablet.css";
 import { mountPage } from "@shared/ui/Page";
 import { translations } from "./i18n";
 import { Tablet } from "./Tablet";
 
-mountPage({ translations, children: <Tablet /> });
-void enableOfflineUse();
+export function mount(): void {
+  mountPage({ translations, isAtOnce: true, children: <Tablet /> });
+  void enableOfflineUse();
+}
 
 /**
  * Let this page open without a network: register the service worker, and ask the browser to keep

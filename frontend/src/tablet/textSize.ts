@@ -1,6 +1,4 @@
 /** The text size that the participant chose: kept on this tablet until its page is closed. */
-import { useEffect, useState } from "react";
-
 export const TEXT_SIZES = [1, 1.2, 1.45] as const;
 export type TextSize = (typeof TEXT_SIZES)[number];
 
@@ -16,11 +14,10 @@ export function nextSize(size: TextSize): TextSize {
   return TEXT_SIZES[(TEXT_SIZES.indexOf(size) + 1) % TEXT_SIZES.length] ?? 1;
 }
 
-export function useTextSize(): readonly [TextSize, () => void] {
-  const [size, setSize] = useState(() => storedSize(sessionStorage.getItem(KEY)));
-  useEffect(() => {
-    document.documentElement.style.setProperty("--text-scale", String(size));
-    sessionStorage.setItem(KEY, String(size));
-  }, [size]);
-  return [size, () => setSize(nextSize)];
+export const chosenSize = (): TextSize => storedSize(sessionStorage.getItem(KEY));
+
+/** Show the page in this size, now and after a reload. */
+export function applySize(size: TextSize): void {
+  document.documentElement.style.setProperty("--text-scale", String(size));
+  sessionStorage.setItem(KEY, String(size));
 }

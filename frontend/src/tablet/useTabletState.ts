@@ -8,7 +8,8 @@ import { ApiError, isUnauthorised } from "@shared/api/request";
 import type { TabletState } from "@shared/api/types";
 import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useCallback, useEffect, useState } from "react";
-import { drafts } from "./drafts/useStored";
+import { drafts } from "./drafts/drafts";
+import { stateInPage } from "./stateInPage";
 
 export const STATE_KEY = ["tablet", "state"] as const;
 
@@ -51,13 +52,6 @@ export function useTabletState() {
     });
   }, [paired, queries, show]);
   return { query, show, connected: paired && feed !== "lost" };
-}
-
-/** The screen that the server has written into the page, which a paired tablet shows at once. */
-function stateInPage(): TabletState | undefined {
-  const text = document.getElementById("first-answer")?.textContent;
-  if (!text) return undefined;
-  return (JSON.parse(text) as { readonly state: TabletState | null }).state ?? undefined;
 }
 
 /**

@@ -2,14 +2,13 @@
  * A form, one page at a time. Every change is passed to its owner, so that no answer exists only on
  * the screen.
  */
-import { Button, Text } from "@mantine/core";
-import { type JSX, type Ref, useEffect, useRef } from "react";
+import { Button } from "@mantine/core";
+import { type JSX, useEffect, useId, useRef } from "react";
 import type { Administration, Answer } from "../api/types";
-import { inLanguage } from "../text";
 import { Icon } from "../ui/Icon";
 import type { FormDraft } from "./draft";
-import classes from "./FormView.module.css";
-import { QuestionField } from "./QuestionField";
+import { FormPage, PageDots } from "./FormPage";
+import type { Filling } from "./filling";
 import type { FormTexts } from "./texts";
 import { type FilledForm, useFilledForm } from "./useFilledForm";
 
@@ -18,6 +17,8 @@ interface FormViewProps {
   readonly language: string;
   readonly texts: FormTexts;
   readonly draft: FormDraft;
+  /** How far the form was filled in before this view was there; otherwise it begins with `draft`. */
+  readonly begun?: Filling | undefined;
   readonly startedAt: Date;
   readonly canOmit?: boolean;
   readonly busy: boolean;
@@ -42,27 +43,21 @@ export function FormView(props: FormViewProps): JSX.Element {
     top.current?.querySelector<HTMLElement>(selector)?.focus();
   }, [form.goal]);
   return (
-    <div className={classes.form} ref={top}>
-      <Head
-        heading={heading}
-        administration={administration}
-        language={language}
-        first={form.page === 0}
-      />
-      <div className={classes.questions}>
-        {form.questions.map((question) => (
-          <QuestionField
-            key={question.key}
-            question={question}
-            value={form.valueOf(question)}
-            problem={form.problemOf(question)}
-            disabled={props.busy}
-            onAnswer={(value) => form.answer(question, value)}
-          />
-        ))}
-      </div>
+    <FormPage
+      id={useId()}
+      top={top}
+      heading={heading}
+      administration={administration}
+      language={language}
+      questions={form.questions}
+      isFirst={form.page === 0}
+      disabled={props.busy}
+      valueOf={form.valueOf}
+      problemOf={form.problemOf}
+      onAnswer={form.answer}
+    >
       <Foot form={form} texts={texts} busy={props.busy} />
-    </div>
+    </FormPage>
   );
 }
 
@@ -74,7 +69,7 @@ interface FootProps {
 
 function Foot({ form, texts, busy }: FootProps): JSX.Element {
   return (
-    <footer className={classes.foot}>
+    <>
       <Button
         size="lg"
         variant="default"
@@ -95,49 +90,6 @@ function Foot({ form, texts, busy }: FootProps): JSX.Element {
           {texts.next}
         </Button>
       )}
-    </footer>
-  );
-}
-
-interface HeadProps {
-  readonly heading: Ref<HTMLHeadingElement>;
-  readonly administration: Administration;
-  readonly language: string;
-  readonly first: boolean;
-}
-
-/** The stem is shown on every page, the instructions only on the first. */
-function Head({ heading, administration, language, first }: HeadProps): JSX.Element {
-  const { stem, instructions, title } = administration.instrument;
-  const lead = inLanguage(stem, language);
-  return (
-    <div className={classes.head}>
-      {first && <Text c="dimmed">{inLanguage(instructions, language)}</Text>}
-      <h1 className={classes.stem} ref={heading} tabIndex={-1}>
-        {lead === "" ? inLanguage(title, language) : lead}
-      </h1>
-    </div>
-  );
-}
-
-interface PageDotsProps {
-  readonly page: number;
-  readonly pages: number;
-  readonly label: (number: number, total: number) => string;
-}
-
-function PageDots({ page, pages, label }: PageDotsProps): JSX.Element {
-  return (
-    <div className={classes.progress}>
-      <div className={classes.dots} aria-hidden="true">
-        {Array.from({ length: pages }, (_, index) => (
-          // biome-ignore lint/suspicious/noArrayIndexKey: pages have no identifier other than their number
-          <span key={index} className={index <= page ? classes.passed : classes.next} />
-        ))}
-      </div>
-      <span className="numbers" role="status">
-        {label(page + 1, pages)}
-      </span>
-    </div>
+    </>
   );
 }

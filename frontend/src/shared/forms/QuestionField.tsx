@@ -1,5 +1,5 @@
 /** One question with its answers: all of them visible, each as large as a thumb. */
-import { type JSX, useId } from "react";
+import type { JSX } from "react";
 import { STEPS_IN_A_ROW } from "./pages";
 import classes from "./QuestionField.module.css";
 import type { Choosing, NumberField, Option, Question, Rating, TextField } from "./questions";
@@ -7,6 +7,8 @@ import type { Choosing, NumberField, Option, Question, Rating, TextField } from 
 type Value = string | number | undefined;
 
 interface QuestionFieldProps {
+  /** Of this question on the page; other elements have ids that start with it. */
+  readonly id: string;
   readonly question: Question;
   readonly value: unknown;
   readonly problem: string | null;
@@ -23,8 +25,7 @@ interface Spoken {
 }
 
 export function QuestionField(props: QuestionFieldProps): JSX.Element {
-  const { question, problem } = props;
-  const id = useId();
+  const { id, question, problem } = props;
   const hint = question.kind === "number" && question.hint !== "" ? question.hint : null;
   const about = [hint && `${id}-hint`, problem && `${id}-problem`].filter(Boolean).join(" ");
   const spoken: Spoken = {
@@ -59,7 +60,7 @@ export function QuestionField(props: QuestionFieldProps): JSX.Element {
   );
 }
 
-type FieldProps<Kind extends Question> = Omit<QuestionFieldProps, "question"> & {
+type FieldProps<Kind extends Question> = Omit<QuestionFieldProps, "id" | "question"> & {
   readonly question: Kind;
   readonly spoken: Spoken;
 };

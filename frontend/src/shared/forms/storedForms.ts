@@ -34,6 +34,17 @@ const OLD_MS = 48 * 3_600_000;
 export const formId = (sessionId: string, administration: string): string =>
   `${sessionId}/${administration}`;
 
+/** A form that nobody has answered yet, with a key of its own. */
+export const newForm = (sessionId: string, administration: string, now: Date): StoredForm => ({
+  id: formId(sessionId, administration),
+  sessionId,
+  administration,
+  idempotencyKey: uuid(),
+  startedAt: now.toISOString(),
+  draft: EMPTY_DRAFT,
+  queued: null,
+});
+
 /** The session of the form with this id. */
 export const sessionOf = (id: string): string => id.slice(0, id.indexOf("/"));
 
@@ -52,22 +63,18 @@ export class StoredForms {
   }
 
   /** The record of this form; a new one, with a key of its own, if there is none yet. */
-  async open(sessionId: string, administration: string, now: Date): Promise<StoredForm> {
-    const id = formId(sessionId, administration);
+  open(sessionId: string, administration: string, now: Date): Promise<StoredForm> {
+    return this.openAs(newForm(sessionId, administration, now));
+  }
+
+  /** The record of this form; `fresh` itself if there is none yet. */
+  async openAs(fresh: StoredForm): Promise<StoredForm> {
     const database = await this.#database;
     const transaction = database.transaction("kept", "readwrite");
-    const existing = await transaction.store.get(id);
-    const stored = existing ?? {
-      id,
-      sessionId,
-      administration,
-      idempotencyKey: uuid(),
-      startedAt: now.toISOString(),
-      draft: EMPTY_DRAFT,
-      queued: null,
-    };
-    if (existing === undefined) await transaction.store.put(stored);
+    const existing = await transaction.store.get(fresh.id);
+    if (existing === undefined) await transaction.store.put(fresh);
     await transaction.done;
+    const stored = existing ?? fresh;
     // An older version may have stored it with fewer fields.
     return { ...stored, draft: { ...EMPTY_DRAFT, ...stored.draft } };
   }

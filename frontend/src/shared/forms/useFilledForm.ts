@@ -22,6 +22,7 @@ export interface FilledFormOptions {
   readonly language: string;
   readonly texts: FormWords;
   readonly draft: FormDraft;
+  readonly begun?: Filling | undefined;
   readonly startedAt: Date;
   readonly canOmit?: boolean;
   readonly onChange: (draft: FormDraft) => void;
@@ -44,7 +45,9 @@ export interface FilledForm {
 
 export function useFilledForm(options: FilledFormOptions): FilledForm {
   const { administration, language, texts, canOmit = false } = options;
-  const [filling, setFilling] = useState(() => startFilling(options.draft, performance.now()));
+  const [filling, setFilling] = useState(
+    () => options.begun ?? startFilling(options.draft, performance.now()),
+  );
   // The texts change a moment after the language: one of them serves as a marker of their language.
   // biome-ignore lint/correctness/useExhaustiveDependencies: texts are new at every render
   const pages = useMemo(

@@ -69,8 +69,7 @@ export const theme = createTheme({
   colors: { petrol, gray: slate, dark: night, red: clay, clay },
   white: "#ffffff",
   black: "#1a2424",
-  fontFamily:
-    'system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "Liberation Sans", sans-serif',
+  fontFamily: "var(--font)",
   fontFamilyMonospace:
     'ui-monospace, "SF Mono", "Cascadia Mono", Menlo, Consolas, "Liberation Mono", "DejaVu Sans Mono", "Noto Sans Mono", monospace',
   headings: {

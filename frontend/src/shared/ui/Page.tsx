@@ -5,6 +5,7 @@ import { MantineProvider } from "@mantine/core";
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
 import type { i18n } from "i18next";
 import { type JSX, type ReactNode, StrictMode, useEffect } from "react";
+import { flushSync } from "react-dom";
 import { createRoot } from "react-dom/client";
 import { I18nextProvider } from "react-i18next";
 import { ApiError } from "../api/request";
@@ -26,6 +27,8 @@ const queries = new QueryClient({
 
 interface PageProps {
   readonly translations: i18n;
+  /** Draw everything before `mountPage` returns, in the place of what is there. */
+  readonly isAtOnce?: boolean;
   readonly children: ReactNode;
 }
 
@@ -56,5 +59,7 @@ export function mountPage(page: PageProps): void {
   const root = document.getElementById("root");
   if (root === null) throw new Error("The page has no element #root to draw into.");
   followImports();
-  createRoot(root).render(<Page {...page} />);
+  const draw = () => createRoot(root).render(<Page {...page} />);
+  if (page.isAtOnce) flushSync(draw);
+  else draw();
 }

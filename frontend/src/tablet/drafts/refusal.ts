@@ -14,7 +14,7 @@ import { uuid } from "@shared/uuid";
 import { useQueryClient } from "@tanstack/react-query";
 import { useEffect, useRef, useState } from "react";
 import { STATE_KEY } from "../useTabletState";
-import { drafts } from "./useStored";
+import { drafts } from "./drafts";
 
 const RETRY_MS = 3000;
 const UNPAIRED = 401;

@@ -14,7 +14,8 @@
  * session or the pairing ends. An unfinished consent is kept with its ticked statements and its
  * signature for as long as it is on the screen, and is never sent automatically.
  */
-import type { RefusalWish, TabletState } from "@shared/api/types";
+import type { RefusalWish, Submission, TabletState } from "@shared/api/types";
+import type { FormDraft } from "@shared/forms/draft";
 import { type FormTables, formId, StoredForms } from "@shared/forms/storedForms";
 import { type IDBPDatabase, openDB } from "idb";
 import type { Signing } from "../screens/consentToSend";
@@ -27,6 +28,8 @@ interface Tables extends FormTables {
 
 /** The key of the only record in this store. */
 const LAST = "last";
+/** The key under which the id of the form is stored that was answered last. */
+const ANSWERED = "reembody.tablet.answered";
 
 const signingKey = ({ session_id, step_index }: TabletState): string =>
   `${session_id}/${step_index}`;
@@ -48,6 +51,38 @@ export class DraftStore extends StoredForms {
     // The types of idb do not see that a database with more stores has those of a smaller one, too.
     super(database as unknown as Promise<IDBPDatabase<FormTables>>);
     this.#database = database;
+  }
+
+  /**
+   * Whether there may be answers of this form, which is known before the database is open.
+   *
+   * It is wrong if another form was answered since, or this one by an older version of the page.
+   */
+  mayHaveAnswers(id: string): boolean {
+    try {
+      return localStorage.getItem(ANSWERED) === id;
+    } catch {
+      return true;
+    }
+  }
+
+  override keep(id: string, draft: FormDraft): Promise<void> {
+    this.#noteAnswered(id);
+    return super.keep(id, draft);
+  }
+
+  override queue(id: string, submission: Submission): Promise<Submission> {
+    this.#noteAnswered(id);
+    return super.queue(id, submission);
+  }
+
+  #noteAnswered(id: string): void {
+    try {
+      localStorage.setItem(ANSWERED, id);
+    } catch {
+      // It is full. The note only saves the participant from seeing the form's first page for a
+      // moment after a reload.
+    }
   }
 
   /** Delete a form that the server has stored; it is not shown again. */

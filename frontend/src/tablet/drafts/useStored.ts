@@ -10,16 +10,22 @@ import type {
 } from "@shared/api/types";
 import { deliver } from "@shared/forms/deliver";
 import type { FormDraft } from "@shared/forms/draft";
+import type { Filling } from "@shared/forms/filling";
 import { type StoredForm, submissionOf } from "@shared/forms/storedForms";
 import { useCallback, useEffect, useRef, useState } from "react";
+import { earlyForm, forgetEarlyForm } from "../early/earlyForm";
 import { type Signing, UNSIGNED } from "../screens/consentToSend";
-import { DraftStore } from "./store";
-
-export const drafts = new DraftStore();
+import { drafts } from "./drafts";
 
 export type FormPhase =
   | { readonly name: "opening" }
-  | { readonly name: "filling"; readonly form: StoredForm; readonly refused: ApiError | null }
+  | {
+      readonly name: "filling";
+      readonly form: StoredForm;
+      /** How far it was filled in before the application was there. */
+      readonly begun?: Filling;
+      readonly refused: ApiError | null;
+    }
   | { readonly name: "sending"; readonly offline: boolean }
   | { readonly name: "held"; readonly error: ApiError }
   | { readonly name: "done" };
@@ -48,9 +54,14 @@ export function useStoredForm(
   onStored: (next: TabletState) => void,
   onSettled: () => void,
 ): StoredFormHandle {
-  const [phase, setPhase] = useState<FormPhase>({ name: "opening" });
+  const [early] = useState(() => earlyForm(sessionId, administration.key));
+  const [phase, setPhase] = useState<FormPhase>(() =>
+    early === null
+      ? { name: "opening" }
+      : { name: "filling", form: early.form, begun: early.filling, refused: null },
+  );
   const timer = useRef<ReturnType<typeof setTimeout>>(undefined);
-  const form = useRef<StoredForm | null>(null);
+  const form = useRef<StoredForm | null>(early?.form ?? null);
   const stored = useRef(onStored);
   const settled = useRef(onSettled);
   useEffect(() => {
@@ -91,6 +102,11 @@ export function useStoredForm(
   }, []);
 
   useEffect(() => {
+    if (early !== null) {
+      // From now on the form is this view's: a later one begins with what is stored.
+      forgetEarlyForm();
+      return () => clearTimeout(timer.current);
+    }
     let cancelled = false;
     void drafts.open(sessionId, administration.key, new Date()).then((opened) => {
       if (cancelled) return;
@@ -105,7 +121,7 @@ export function useStoredForm(
       cancelled = true;
       clearTimeout(timer.current);
     };
-  }, [sessionId, administration.key, attempt]);
+  }, [sessionId, administration.key, attempt, early]);
 
   const storeDraft = (draft: FormDraft) => {
     if (form.current === null) return;

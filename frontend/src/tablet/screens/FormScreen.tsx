@@ -31,6 +31,7 @@ export function FormScreen({ state, administration, show, refresh }: FormScreenP
         language={state.language}
         texts={texts}
         draft={phase.form.draft}
+        begun={phase.begun}
         startedAt={new Date(phase.form.startedAt)}
         busy={false}
         onChange={form.storeDraft}
