@@ -35,7 +35,8 @@ _WORTH_IT = (
 _SMALL_BYTES = 1024
 _LEVEL = 6
 _BROTLI = ".br"
-PAGES = {"/": "console/index.html", "/tablet": "tablet/index.html", "/vr": "vr/index.html"}
+TABLET = "/tablet"
+PAGES = {"/": "console/index.html", TABLET: "tablet/index.html", "/vr": "vr/index.html"}
 # A service worker controls the addresses next to and below its own, which identifies it.
 TABLET_WORKER = "/tablet-worker.js"
 # Workers that decode compressed models with WebAssembly. A worker has the policy of its own file,
@@ -49,6 +50,13 @@ WORKERS_THAT_EVALUATE = ("wasm/textureWorker-", "wasm/bodiesWorker-", "wasm/tryo
 # such a page loads comes from this server, and its workers must be sent with the same policy.
 ISOLATED = {"/vr"}
 ISOLATION: Mapping[str, str] = MappingProxyType({"cross-origin-embedder-policy": "require-corp"})
+# A page that is cut off from the page which opened it needs a new process of the browser, for which
+# a participant would wait some 35 ms longer. One that the person opened by its address, a bookmark
+# or a QR code has nothing to be cut off from: no other page has a handle of its window.
+OPENED_BY_PERSON = ("sec-fetch-site", "none")
+NOTHING_TO_CUT_OFF: Mapping[str, str] = MappingProxyType(
+    {"cross-origin-opener-policy": "unsafe-none"}
+)
 FIRST_ANSWER = "first-answer"
 # A page that has the answer already needs no request for it.
 _PRELOADED = re.compile(r"<link[^>]* rel=\"preload\" as=\"fetch\"[^>]*>")
@@ -141,8 +149,7 @@ def install_pages(
     """
     router = APIRouter(include_in_schema=False)
     for address, file in PAGES.items():
-        more = ISOLATION if address in ISOLATED else {}
-        page = _page(static / file, more, first_answers.get(address))
+        page = _page(static / file, address, first_answers.get(address))
         router.add_api_route(address, page, methods=["GET", "HEAD"])
     worker = _worker(static / TABLET_WORKER[1:])
     router.add_api_route(TABLET_WORKER, worker, methods=["GET", "HEAD"])
@@ -151,12 +158,11 @@ def install_pages(
         app.mount("/assets", Assets(directory=static / "assets"), name="assets")
 
 
-def _page(
-    file: Path, more_headers: Mapping[str, str], first: FirstAnswer | None
-) -> Callable[[Request], Response]:
+def _page(file: Path, address: str, first: FirstAnswer | None) -> Callable[[Request], Response]:
     def serve(request: Request) -> Response:
         if not file.is_file():
             return HTMLResponse(_NOT_BUILT, status_code=503)
+        more_headers = _page_headers(address, request.headers)
         answer = None if first is None else _answer_if_possible(first, request)
         if answer is None:
             return FileResponse(file, headers={"cache-control": "no-cache", **more_headers})
@@ -165,6 +171,16 @@ def _page(
         return HTMLResponse(html, headers={"cache-control": "no-store", **more_headers})
 
     return serve
+
+
+def _page_headers(address: str, request: Headers) -> dict[str, str]:
+    if address in ISOLATED:
+        return dict(ISOLATION)
+    if address != TABLET:
+        return {}
+    name, value = OPENED_BY_PERSON
+    is_opened_by_person = request.get(name) == value
+    return {"vary": name, **(NOTHING_TO_CUT_OFF if is_opened_by_person else {})}
 
 
 def _answer_if_possible(first: FirstAnswer, request: Request) -> str | None:

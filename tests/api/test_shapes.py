@@ -117,6 +117,7 @@ def test_a_streamed_body_is_limited(lab: Lab) -> None:
         ("get", "/api/health", {}),
         ("get", "/", {}),
         ("get", "/tablet", {}),
+        ("get", "/tablet", {"sec-fetch-site": "none"}),
         ("get", "/api/nothing", {}),
         ("post", "/api/logout", {"origin": "https://elsewhere.example"}),
         ("post", "/api/studies", {"content-length": "99999999"}),

@@ -6,7 +6,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.api.pages import install_pages
+from app.api.pages import PAGES, install_pages
 
 
 @pytest.mark.parametrize("built", [True, False])
@@ -48,3 +48,29 @@ def test_a_page_answers_a_request_for_its_headers(tmp_path: Path) -> None:
     asked = TestClient(app).head("/tablet")
     assert (asked.status_code, asked.content) == (200, b"")
     assert asked.headers["content-type"] == "text/html; charset=utf-8"
+
+
+@pytest.mark.parametrize(
+    ("address", "site", "policy"),
+    [
+        ("/tablet", "none", "unsafe-none"),
+        ("/tablet", "cross-site", None),
+        ("/tablet", "same-origin", None),
+        ("/tablet", None, None),
+        ("/", "none", None),
+        ("/vr", "none", None),
+    ],
+)
+def test_only_a_tablet_that_a_person_opens_is_not_cut_off(
+    tmp_path: Path, address: str, site: str | None, policy: str | None
+) -> None:
+    """A page that another page opened, or may have opened, keeps the policy of all answers."""
+    file = tmp_path / PAGES[address]
+    file.parent.mkdir()
+    file.write_text("<html><head></head><body></body></html>")
+    app = FastAPI()
+    install_pages(app, tmp_path)
+    headers = {} if site is None else {"sec-fetch-site": site}
+    answer = TestClient(app).get(address, headers=headers)
+    assert answer.headers.get("cross-origin-opener-policy") == policy
+    assert ("sec-fetch-site" in answer.headers.get("vary", "")) == (address == "/tablet")
