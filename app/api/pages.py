@@ -150,7 +150,9 @@ def install_pages(
     router = APIRouter(include_in_schema=False)
     for address, file in PAGES.items():
         page = _page(static / file, address, first_answers.get(address))
-        router.add_api_route(address, page, methods=["GET", "HEAD"])
+        # People also type it with a slash at its end: being sent on would take them a round trip.
+        for path in {address, f"{address.rstrip('/')}/"}:
+            router.add_api_route(path, page, methods=["GET", "HEAD"])
     worker = _worker(static / TABLET_WORKER[1:])
     router.add_api_route(TABLET_WORKER, worker, methods=["GET", "HEAD"])
     app.include_router(router)

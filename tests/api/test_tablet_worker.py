@@ -39,15 +39,29 @@ def test_a_page_opens_without_an_answer_that_fails(tmp_path: Path) -> None:
     assert client.get("/tablet").text == html
 
 
+def served_page(folder: Path, address: str) -> TestClient:
+    """Return a client of a server that has only this page."""
+    file = folder / PAGES[address]
+    file.parent.mkdir()
+    file.write_text("<html><head></head><body></body></html>")
+    app = FastAPI()
+    install_pages(app, folder)
+    return TestClient(app, follow_redirects=False)
+
+
 def test_a_page_answers_a_request_for_its_headers(tmp_path: Path) -> None:
     """Monitors and link checkers ask with HEAD, and get the status and headers of the page."""
-    (tmp_path / "tablet").mkdir()
-    (tmp_path / "tablet/index.html").write_text("<html><head></head><body></body></html>")
-    app = FastAPI()
-    install_pages(app, tmp_path)
-    asked = TestClient(app).head("/tablet")
+    asked = served_page(tmp_path, "/tablet").head("/tablet")
     assert (asked.status_code, asked.content) == (200, b"")
     assert asked.headers["content-type"] == "text/html; charset=utf-8"
+
+
+@pytest.mark.parametrize("address", list(PAGES))
+def test_an_address_may_end_with_a_slash(tmp_path: Path, address: str) -> None:
+    """A page is sent at once at its address with a slash, too."""
+    client = served_page(tmp_path, address)
+    with_slash = client.get(f"{address.rstrip('/')}/")
+    assert (with_slash.status_code, with_slash.text) == (200, client.get(address).text)
 
 
 @pytest.mark.parametrize(
@@ -65,12 +79,8 @@ def test_only_a_tablet_that_a_person_opens_is_not_cut_off(
     tmp_path: Path, address: str, site: str | None, policy: str | None
 ) -> None:
     """A page that another page opened, or may have opened, keeps the policy of all answers."""
-    file = tmp_path / PAGES[address]
-    file.parent.mkdir()
-    file.write_text("<html><head></head><body></body></html>")
-    app = FastAPI()
-    install_pages(app, tmp_path)
+    client = served_page(tmp_path, address)
     headers = {} if site is None else {"sec-fetch-site": site}
-    answer = TestClient(app).get(address, headers=headers)
+    answer = client.get(address, headers=headers)
     assert answer.headers.get("cross-origin-opener-policy") == policy
     assert ("sec-fetch-site" in answer.headers.get("vary", "")) == (address == "/tablet")

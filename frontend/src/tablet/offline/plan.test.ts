@@ -9,6 +9,7 @@ describe("what the worker does with a request", () => {
   it("caches the tablet's page and hashed files, and nothing else", () => {
     expect(plan("/tablet", "navigate")).toBe("page");
     expect(plan("/tablet?code=ABC-123", "navigate")).toBe("page");
+    expect(plan("/tablet/", "navigate")).toBe("page");
     expect(plan("/assets/tablet-1.js")).toBe("asset");
     expect(plan("/", "navigate")).toBe("leave");
     expect(plan("/tablets", "navigate")).toBe("leave");

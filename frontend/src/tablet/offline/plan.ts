@@ -26,7 +26,8 @@ interface PlannedRequest {
 export function planFor({ method, url, mode }: PlannedRequest, origin: string, page: string): Plan {
   const address = new URL(url);
   if (method !== "GET" || address.origin !== origin) return "leave";
-  if (mode === "navigate") return address.pathname === page ? "page" : "leave";
+  // With or without a slash at its end.
+  if (mode === "navigate") return address.pathname.replace(/\/$/, "") === page ? "page" : "leave";
   return address.pathname.startsWith("/assets/") ? "asset" : "leave";
 }
 
