@@ -9,6 +9,7 @@ import pytest
 
 from app.cli.pilot.run import CohortOptions, carry_out_cohort
 from app.features.results.pilot.simulation import Cohort, CohortOrder, Sharing
+from app.features.results.pilot.simulation.cohort_record import open_record
 from tests.cli.invoked import Invoked
 from tests.protocol.helpers import CONFIGS
 
@@ -119,3 +120,65 @@ def test_another_cohort_is_not_continued(
     assert "another shard" in _COMMAND.refusal(study, *_PEOPLE, "--shard", "2/2", "--out", copy)
     assert copy.read_bytes() == before
     assert json.loads(before.splitlines()[0])["simulated"] is True
+
+
+@pytest.mark.parametrize(
+    ("line", "written", "instead", "said"),
+    [
+        (1, '"participants": 3', '"participants": 1', "there is no visit 1 of 1 people"),
+        (1, '"participants": 3', '"participants": "x"', "participants: Input should be a valid"),
+        (1, ', "avatar": "delayed_copy"', "", "avatar: Field required"),
+        (2, '"number": 0', '"number": 77', "there is no visit 77 of 3 people, counted from 0"),
+        (2, '"number": 0', '"number": -5', "there is no visit -5"),
+        (2, '"number": 0', '"number": "a"', "number: Input should be a valid integer"),
+        (2, '"number": 0', '"number": 1', "visit 1 is there already"),
+        (2, '"simulated_s": ', '"simulated_s": "abc", "more": ', "simulated_s: Input should be"),
+        (2, '"simulated_s": ', '"simulated_s": NaN, "more": ', "NaN is not a finite number"),
+    ],
+)
+def test_a_damaged_record_is_refused_at_its_line(
+    whole: tuple[Path, dict[str, Any]],
+    tmp_path: Path,
+    line: int,
+    written: str,
+    instead: str,
+    said: str,
+) -> None:
+    """What is no visit of the cohort would go into the report, so the record is refused."""
+    lines = whole[0].read_text(encoding="utf-8").splitlines(keepends=True)
+    assert written in lines[line - 1]
+    lines[line - 1] = lines[line - 1].replace(written, instead, 1)
+    damaged = tmp_path / "damaged.jsonl"
+    damaged.write_text("".join(lines), encoding="utf-8")
+    refusal = _COMMAND.refusal("merge", damaged)
+    assert "damaged.jsonl, line" in refusal
+    assert said in refusal
+
+
+def test_records_that_tell_a_visit_differently_are_refused(
+    whole: tuple[Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    """Else the report would depend on the order in which they are given."""
+    record = whole[0]
+    text = record.read_text(encoding="utf-8")
+    other = tmp_path / "other.jsonl"
+    other.write_text(
+        re.sub(r'"simulated_s": [\d.]+', '"simulated_s": 99.5', text, count=1), "utf-8"
+    )
+    for records in ((record, other), (other, record)):
+        assert "tell visit 0 differently" in _COMMAND.refusal("merge", *records)
+
+
+def test_one_record_is_written_by_one_process_at_a_time(
+    study: Path, whole: tuple[Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    """A second process is refused while the first writes, and the record stays as it was."""
+    copy = tmp_path / "copy.jsonl"
+    copy.write_bytes(whole[0].read_bytes())
+    header = json.loads(copy.read_text(encoding="utf-8").splitlines()[0])
+    with (
+        open_record(copy, header, range(3)),
+        pytest.raises(ValueError, match="another process is writing"),
+    ):
+        _simulated(study, copy)
+    assert copy.read_bytes() == whole[0].read_bytes()

@@ -9,10 +9,10 @@ from app.features.results.pilot.simulation.check import Checked, Finding, Reache
 from app.features.results.pilot.simulation.cohort import (
     Cohort,
     CohortOrder,
-    is_cohort,
     merged_cohort,
     simulate_cohort,
 )
+from app.features.results.pilot.simulation.cohort_record import is_cohort
 from app.features.results.pilot.simulation.form_texts import (
     preregistration_texts,
     reach_sentence,
