@@ -54,6 +54,14 @@ class ArchiveKind:
         write_whole(path, write)
         return digest
 
+    def is_one(self, path: Path) -> bool:
+        """Return whether a file is of this kind, of any version; raise OSError."""
+        try:
+            header, _ = self._contents(path, ())
+        except ValueError:
+            return False
+        return isinstance(header, dict) and header.get("format") == self.format
+
     def read(self, path: Path) -> tuple[dict[str, Any], dict[str, Any], str]:
         """Read a file; return its header, its tables and its content hash.
 
@@ -61,19 +69,23 @@ class ArchiveKind:
             ValueError: (`error`) the file is of another kind, of a later version, or damaged.
             OSError: it cannot be opened.
         """
-        if path.stat().st_size > MOST_BYTES:
-            raise self.error(f"{path}: larger than {MOST_BYTES} bytes, which no model is.")
-        try:
-            with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-                header = json.loads(archive["header"].tobytes().decode())
-                tables = {name: archive[name] for name in self.tables}
-        except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-            raise self.error(f"{path}: not {self.title}; `{self.command}` writes one.") from error
+        header, tables = self._contents(path, self.tables)
         self._check_header(path, header)
         digest = str(header.pop("content_hash", ""))
         if digest != self.content_hash(header, tables):
             raise self.error(f"{path}: damaged, its content does not match its hash; fit it again.")
         return header, tables, digest
+
+    def _contents(self, path: Path, names: Sequence[str]) -> tuple[Any, dict[str, Any]]:
+        """Return the header, whatever it is, and the named tables; raise `error`, OSError."""
+        if path.stat().st_size > MOST_BYTES:
+            raise self.error(f"{path}: larger than {MOST_BYTES} bytes, which no model is.")
+        try:
+            with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
+                header = json.loads(archive["header"].tobytes().decode())
+                return header, {name: archive[name] for name in names}
+        except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+            raise self.error(f"{path}: not {self.title}; `{self.command}` writes one.") from error
 
     def content_hash(self, header: Mapping[str, Any], tables: Mapping[str, Any]) -> str:
         """Return the SHA-256 of the header, without its own hash, and the tables."""

@@ -31,6 +31,11 @@ def write_reaching(path: Path, fit: FittedReaching) -> FittedReaching:
     return replace(fit, content_hash=digest)
 
 
+def is_reaching(path: Path) -> bool:
+    """Return whether a file is such a model, of any version; raise OSError."""
+    return _KIND.is_one(path)
+
+
 def read_reaching(path: Path) -> FittedReaching:
     """Read a model; it draws the same people and movements as the one that was written.
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from app.cli.outputs import require_output
 from app.protocol import load_instrument
 from app.resources import study_configs_dir
 from app.science.instruments.table import Scored, scored_csv
@@ -55,6 +56,7 @@ def offer_instrument(order: OfferOrder) -> dict[str, Any]:
     """
     from app.features.results.imports import offer, offered_file, read_columns
 
+    require_output(order.out, order.answers)
     text = _text_of(order.answers)
     known = {
         path.stem: load_instrument(path.read_text(encoding="utf-8")).instrument

@@ -54,6 +54,22 @@ READ: dict[str, tuple[str, ...]] = {
     "serve key": ("--lan", "--certificate", "key.pem", "--key", MISSING),
 }
 """By `command parameter`: arguments of the command with one missing file."""
+SAME: dict[str, tuple[str, tuple[str, ...]]] = {
+    "walk fit walks": ("walks.csv", ("walks.csv",)),
+    "walk fit people": ("head.csv", ("walks.csv", "--people", "head.csv")),
+    "walk fit scene": ("head.csv", ("walks.csv", "--scene", "head.csv")),
+    "reach fit recordings": ("head.csv", ("head.csv",)),
+    "reach fit people": ("walks.csv", ("head.csv", "--people", "walks.csv")),
+    "retarget to": ("clip.bvh", ("other.bvh", "--to", "clip.bvh")),
+    "tracking align headset": ("head.csv", ("head.csv", "walks.csv", "--move", "walks.csv")),
+    "tracking align tracker": ("walks.csv", ("head.csv", "walks.csv", "--move", "head.csv")),
+    "tracking align move": ("walks.csv", ("head.csv", "head.csv", "--move", "walks.csv")),
+    "tune capture": ("clip.bvh", ("--capture", "clip.bvh")),
+    "instrument answers": ("walks.csv", ("walks.csv",)),
+    "avatar edit operations": ("walks.csv", ("standard", "--operations", "walks.csv")),
+    "crossing run scene": ("walks.csv", ("walks.csv",)),
+}
+"""By `command parameter`: the file that is both read and written, and the arguments."""
 ALIKE = {
     # These are read by the same code as those above, but only after files that must be valid.
     "walk evaluate model",
@@ -140,6 +156,36 @@ def test_a_missing_output_folder_is_reported_before_the_work(
 ) -> None:
     """A missing output folder is reported before any long work begins."""
     assert f"there is no folder {folder / 'none'}" in Invoked(command).refusal(*arguments)
+
+
+@pytest.mark.parametrize("link", [False, True])
+@pytest.mark.parametrize("what", sorted(SAME))
+def test_a_file_that_is_read_is_not_written_over(what: str, folder: Path, *, link: bool) -> None:
+    """An output that is one of the inputs is refused before any work, also through a link."""
+    name, arguments = SAME[what]
+    before = (folder / name).read_bytes()
+    out = folder / f"link{Path(name).suffix}"
+    if link:
+        out.symlink_to(folder / name)
+    told = Invoked(what.split()[0]).refusal(
+        *what.split()[1:-1], *arguments, "--out", out if link else name
+    )
+    assert f"that is {name}, which is read, and it would be lost: name another file" in told
+    assert (folder / name).read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("command", "read", "title"),
+    [("walk", "walks.csv", "a walking model"), ("reach", "head.csv", "a file of how people reach")],
+)
+def test_only_a_model_of_the_same_kind_is_replaced(
+    command: str, read: str, title: str, folder: Path
+) -> None:
+    """A fit does not replace a file that holds something else than what it writes."""
+    (folder / "notes.npz").write_text("to keep")
+    told = Invoked(command).refusal("fit", read, "--out", "notes.npz")
+    assert f"--out notes.npz: there is a file already that is not {title}" in told
+    assert (folder / "notes.npz").read_text() == "to keep"
 
 
 def test_every_file_parameter_of_every_command_is_tested() -> None:

@@ -29,6 +29,11 @@ def write_model(path: Path, fit: FittedWalking, rules: FollowingRules) -> str:
     return _KIND.write(path, _header(fit, rules), tables_of(fit.database))
 
 
+def is_model(path: Path) -> bool:
+    """Return whether a file is a walking model, of any version; raise OSError."""
+    return _KIND.is_one(path)
+
+
 def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
     """Read a model; return it with the rules its agents walk by, and its content hash.
 

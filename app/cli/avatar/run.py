@@ -12,6 +12,7 @@ from app.cli.avatar.saving import Saved, ToSave, based_on, change_json
 from app.cli.avatar.sources import Source, read, read_file, text_of, versions_of
 from app.cli.avatars import check_key, check_words
 from app.cli.errors import require_folder_of
+from app.cli.outputs import require_output
 from app.protocol import ConfigError, did_you_mean
 from app.protocol.avatar import avatar_text, content_of, loaded, single_text
 from app.protocol.avatar_editing import (
@@ -132,7 +133,8 @@ def edit(library: Library, order: EditOrder) -> Done:
     Raises ValueError with every problem, OSError, ReembodyError. Then nothing is written or stored:
     a version cannot be taken back, so it is stored only once its file is ready.
     """
-    require_folder_of(order.out)
+    # The source may be replaced by what is made of it; its operations may not.
+    require_output(order.out, order.operations_file)
     if order.save is not None:
         check_key("--save", order.save)
         check_words(order.title, order.note)

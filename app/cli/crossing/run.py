@@ -20,7 +20,7 @@ from app.adapters.cosimulation import (
     shipped_scenes,
     sumo_folder,
 )
-from app.cli.errors import require_folder_of
+from app.cli.outputs import require_output
 from app.errors import missing_file
 from app.protocol import ConfigError
 from app.science.cosimulation import (
@@ -73,7 +73,7 @@ def carry_out_run(
 
     A lost partner is no error: its record ends there, is written, and says why.
     """
-    require_folder_of(out)
+    require_output(out, key)
     scene = _scene(key)
     file = scene.file
     steps = max(1, round(file.duration_s / file.step_s))

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from app.adapters.reaching_file import read_reaching, write_reaching
-from app.cli.errors import require_folder_of
+from app.adapters.reaching_file import is_reaching, read_reaching, write_reaching
+from app.cli.outputs import require_output, require_replaceable
 from app.cli.reach.inputs import HandsOrder, RecordedReaches, read_reaches
 from app.science.reaching import (
     FittedReaching,
@@ -84,7 +84,8 @@ def carry_out_fit(
 
     `now` is told what is being done, in words.
     """
-    require_folder_of(out)
+    require_output(out, *order.files, order.people)
+    require_replaceable(out, "a file of how people reach", is_reaching)
     rules = ReachRules()
     recorded = read_reaches(order, rules)
     now(f"making the maps of {len(recorded.reaches)} reaches")

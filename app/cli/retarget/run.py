@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.adapters.captures import WRITERS
-from app.cli.errors import require_folder_of
+from app.cli.outputs import require_output
 from app.cli.retarget.inputs import (
     Avatar,
     Clip,
@@ -110,6 +110,6 @@ def _check_out(order: RetargetOrder) -> None:
     if order.out.suffix.lower() not in _WRITERS:
         valid = " or ".join(_WRITERS)
         raise ValueError(f"--out {order.out}: names ending with {valid} are valid")
-    require_folder_of(order.out)
+    require_output(order.out, order.to, order.joint_map, order.skeleton)
     if order.out.exists() and order.clip.exists() and order.out.samefile(order.clip):
         raise ValueError(f"--out {order.out}: that is the clip itself, give another name")

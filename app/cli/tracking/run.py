@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.cli.errors import require_folder_of
+from app.cli.outputs import require_output
 from app.cli.tracking.inputs import read_poses, write_poses
 from app.science.alignment import Alignment, PoseStream, Watched, fit_alignment, follow
 
@@ -52,7 +52,7 @@ def carry_out(order: AlignOrder) -> Aligned:
         ValueError: a file cannot be used, or its movement shows no alignment.
         OSError: a file cannot be read or written.
     """
-    require_folder_of(order.out)
+    require_output(order.out, order.headset, order.tracker, order.move)
     headset, tracker = read_poses(order.headset), read_poses(order.tracker)
     other = None if order.move is None else read_poses(order.move)
     changes = tuple(follow(headset, tracker))

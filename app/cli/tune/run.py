@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from app.cli.avatars import check_key, lab_database
-from app.cli.errors import require_folder_of, warn
+from app.cli.errors import warn
+from app.cli.outputs import require_output
 from app.cli.tune.storage import save_tuned, stored_avatar
 from app.database import Database
 from app.protocol.avatar import avatar_text
@@ -95,7 +96,7 @@ def carry_out(order: TuneOrder) -> Tuned:
         raise ValueError("--evaluate makes no relay experiment, so --relay-torque has no effect")
     if order.evaluate and (order.save is not None or order.out is not None):
         raise ValueError("--evaluate changes nothing, so there is nothing to --save or write --out")
-    require_folder_of(order.out)
+    require_output(order.out, order.capture)
     if order.save is None and order.avatar is None:
         return _carried_out(order, options, None)
     if order.save is not None:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from app.adapters.walks.model_file import read_model, write_model
-from app.cli.errors import require_folder_of
+from app.adapters.walks.model_file import is_model, read_model, write_model
+from app.cli.outputs import require_output, require_replaceable
 from app.cli.walk.inputs import Entries, read_entries, tables_of
 from app.cli.walk.people import read_people
 from app.cli.walk.scenes import NamedScenes, read_scene
@@ -176,7 +176,9 @@ def carry_out_fit(order: FitOrder, now: Callable[[str], None] = lambda _step: No
     """
     if order.reading not in READINGS:
         raise ValueError(f"--reading {order.reading!r}: {', '.join(READINGS)} are valid")
-    require_folder_of(order.out)
+    recorded = order.walks
+    require_output(order.out, *recorded.files, recorded.people, recorded.scene)
+    require_replaceable(order.out, "a walking model", is_model)
     read = _read(order.walks, order.depends_on)
     entries = read.entries
     check_varies(entries, order.depends_on)
