@@ -5,9 +5,14 @@ so that a truncated or changed file is rejected. The file is written next to its
 then moved there: a reader finds either the old or the new file, complete.
 """
 
+import errno
 import hashlib
 import json
+import lzma
+import struct
+import tokenize
 import zipfile
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +23,26 @@ import numpy as np
 from app.whole_files import write_whole
 
 MOST_BYTES: Final = 2_000_000_000
+UNREADABLE: Final = (
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    ArithmeticError,
+    EOFError,
+    SyntaxError,
+    RuntimeError,
+    MemoryError,
+    OSError,
+    struct.error,
+    tokenize.TokenError,
+    zlib.error,
+    lzma.LZMAError,
+    zipfile.BadZipFile,
+)
+"""What reading an archive raises if a single bit is wrong, or if it is another NumPy file.
+An OSError counts if it comes from a decompressor (no number), or is about a place that no file can
+have (EINVAL)."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +109,13 @@ class ArchiveKind:
             with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
                 header = json.loads(archive["header"].tobytes().decode())
                 return header, {name: archive[name] for name in names}
-        except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-            raise self.error(f"{path}: not {self.title}; `{self.command}` writes one.") from error
+        except UNREADABLE as error:
+            if isinstance(error, OSError) and error.errno not in (None, errno.EINVAL):
+                raise
+            raise self.error(
+                f"{path}: not {self.title}; `{self.command}` writes one. If it was one, it is"
+                " damaged: fit it again."
+            ) from error
 
     def content_hash(self, header: Mapping[str, Any], tables: Mapping[str, Any]) -> str:
         """Return the SHA-256 of the header, without its own hash, and the tables."""

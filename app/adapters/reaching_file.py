@@ -46,7 +46,7 @@ def read_reaching(path: Path) -> FittedReaching:
     header, tables, digest = _KIND.read(path)
     try:
         return _fit_of(header, tables, digest)
-    except (KeyError, TypeError) as error:
+    except (LookupError, TypeError, AttributeError) as error:
         raise ReachingError(f"{path}: incomplete ({error}); fit it again.") from error
 
 

@@ -44,7 +44,7 @@ def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
     header, tables, digest = _KIND.read(path)
     try:
         return _fit_of(header, tables), FollowingRules(**header["rules"]), digest
-    except (KeyError, TypeError) as error:
+    except (LookupError, TypeError, AttributeError) as error:
         raise WalkingError(f"{path}: incomplete ({error}); fit it again.") from error
 
 
