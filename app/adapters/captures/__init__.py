@@ -9,7 +9,7 @@ from app.adapters.captures.capture import Capture, CaptureError, Limits, Reading
 from app.adapters.captures.formats import FORMATS, extensions, format_texts
 from app.adapters.captures.reader import read_capture, read_capture_file
 from app.adapters.captures.table_export import to_csv
-from app.adapters.captures.text import text_lines
+from app.adapters.captures.text import number_of, text_lines
 from app.adapters.captures.writers import WRITERS, writer_of, writer_texts
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "Reading",
     "extensions",
     "format_texts",
+    "number_of",
     "read_capture",
     "read_capture_file",
     "safe_names",

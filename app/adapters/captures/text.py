@@ -5,6 +5,7 @@ A file of a hundred megabytes is never completely in memory as text, only the cu
 
 import codecs
 import io
+import math
 from collections.abc import Iterator
 from itertools import islice
 
@@ -52,6 +53,17 @@ def text_lines(data: bytes, *, keep_ends: bool = False) -> Iterator[str]:
             yield line if keep_ends else line.rstrip("\n")
     except UnicodeDecodeError:
         raise CaptureError("the text breaks off within a character.", line=number + 1) from None
+
+
+def number_of(cell: str) -> float:
+    """Return the number that a cell contains; NaN if it contains none.
+
+    Python would read 8_0 as 80; no table means that.
+    """
+    try:
+        return math.nan if "_" in cell else float(cell)
+    except ValueError:
+        return math.nan
 
 
 def first_lines(data: bytes, count: int) -> list[str]:

@@ -1,15 +1,21 @@
 """Read the inputs of `reembody reach`: hands in captures, and whose they are."""
 
-import csv
-import io
 import re
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
 from app.adapters.captures import CaptureError, read_capture_file
 from app.adapters.session_samples import HANDS, is_session_samples, read_session_samples
+from app.cli.people_list import (
+    file_named,
+    labels_of,
+    matching,
+    read_list,
+    require_matched,
+    set_once,
+    some_of,
+)
 from app.science.reaching import (
     HandTrack,
     NoReach,
@@ -24,7 +30,6 @@ from app.science.retargeting import propose_joint_map
 from app.science.rig import RigError, RigMotion
 
 _UXF_SESSION = re.compile(r"S\d{3,}")
-_NAMES_SHOWN = 6
 _BOXES = (
     "at boxes a hand goes out, along and in, and what is found are parts of its way, quicker than"
     " the whole; use phases in which hands reach freely"
@@ -55,6 +60,7 @@ class _Row:
     subject: str
     width_m: float | None
     stature_m: float | None
+    at: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,12 +89,20 @@ def read_reaches(order: HandsOrder, rules: ReachRules) -> RecordedReaches:
     """
     people = {} if order.people is None else _read_people(order.people)
     found, known = RecordedReaches(), set[bytes]()
-    used: set[str] = set()
+    labels = labels_of(order.files)
+    rows = {path: next(iter(matching(path, people)), None) for path in order.files}
+    if people and not any(rows.values()):
+        raise ValueError(
+            f"{order.people} lists {some_of(sorted(people))}, none of which is among the"
+            " recordings: give the files' names as they end, as in P7/right.csv."
+        )
+    without = [labels[path] for path, key in rows.items() if key is None]
+    found.notices.extend(
+        require_matched({name: row.at for name, row in people.items()}, order.files, without)
+    )
     for path in order.files:
-        key = next((name for name in people if _ends_with(path, name)), None)
-        if key is not None:
-            used.add(key)
-        who = _reacher(path, None if key is None else people[key], order)
+        key = rows[path]
+        who = _reacher(path, labels[path], None if key is None else people[key], order)
         if key is None:
             found.named_by_file.add(who.subject)
         if is_session_samples(path):
@@ -107,11 +121,6 @@ def read_reaches(order: HandsOrder, rules: ReachRules) -> RecordedReaches:
             reaches, left_out = reaches_of(track, rules)
             found.reaches.extend(reaches)
             found.left_out.extend(left_out)
-    if people and not used:
-        raise ValueError(
-            f"{order.people} lists {_some(sorted(people))}, none of which is among the recordings:"
-            " give the files' names as they end, as in P7/right.csv."
-        )
     return found
 
 
@@ -144,11 +153,11 @@ def _hands_of_session(path: Path, who: Reacher, stature_m: float | None) -> list
     ]  # fmt: skip
 
 
-def _reacher(path: Path, row: _Row | None, order: HandsOrder) -> Reacher:
-    """Return whose recording it is: by the table, by a folder of UXF, or else by its name."""
+def _reacher(path: Path, label: str, row: _Row | None, order: HandsOrder) -> Reacher:
+    """Return whose recording it is: by the table, by a folder of UXF, or else by its label."""
     parts = path.parts
     uxf = [at for at, part in enumerate(parts[:-1]) if _UXF_SESSION.fullmatch(part) and at > 0]
-    source, subject = path.name, path.stem
+    source, subject = label, label.removesuffix(path.suffix)
     if uxf:
         # Files of different people and sessions have the same names there.
         begin = max(uxf[-1] - 2, 0)
@@ -161,39 +170,20 @@ def _reacher(path: Path, row: _Row | None, order: HandsOrder) -> Reacher:
 
 def _read_people(path: Path) -> dict[str, _Row]:
     """Read a CSV with the columns file, subject and, optionally, width_m and stature_m."""
-    reader = csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig")))
-    missing = [name for name in ("file", "subject") if name not in (reader.fieldnames or ())]
-    if missing:
-        raise ValueError(
-            f"{path}: has no column {' and '.join(missing)}; it needs file, subject and,"
-            " optionally, width_m and stature_m."
-        )
     rows: dict[str, _Row] = {}
-    for row in reader:
-        file, subject = (row["file"] or "").strip(), (row["subject"] or "").strip()
+    statures_m: dict[str, float] = {}
+    for row in read_list(path, ("file", "subject"), ("width_m", "stature_m")).rows:
+        file, subject = file_named(row.cells["file"]), row.cells["subject"]
         if not file or not subject:
-            raise ValueError(f"{path}, line {reader.line_num}: a file or a subject is missing.")
-        where = f"{path}, line {reader.line_num}"
-        width_m, stature_m = (_metres(row, name, where) for name in ("width_m", "stature_m"))
-        if stature_m is not None and not 0.5 <= stature_m <= 2.6:
-            raise ValueError(f"{where}: stature_m is {stature_m:g}; give metres, 0.5 to 2.6.")
-        rows[file] = _Row(subject, width_m, stature_m)
+            raise ValueError(f"{row.at}: a file or a subject is missing.")
+        width_m, stature_m = row.number("width_m"), row.number("stature_m")
+        if stature_m is not None:
+            if not 0.5 <= stature_m <= 2.6:
+                raise ValueError(f"{row.at}: stature_m is {stature_m:g}; give metres, 0.5 to 2.6.")
+            set_once(statures_m, subject, stature_m, f"stature_m of {subject!r}", row.at)
+        said = _Row(subject, width_m, stature_m, row.at)
+        before = rows.setdefault(file, said)
+        for name in ("subject", "width_m", "stature_m"):
+            old, new = getattr(before, name), getattr(said, name)
+            set_once({file: old}, file, new, f"{name} of {file!r}", row.at)
     return rows
-
-
-def _metres(row: Mapping[str, str | None], name: str, where: str) -> float | None:
-    cell = (row.get(name) or "").strip()
-    try:
-        return float(cell) if cell else None
-    except ValueError:
-        raise ValueError(f"{where}: {name} is {cell!r}, not a number.") from None
-
-
-def _ends_with(path: Path, name: str) -> bool:
-    """Return whether a path ends with a name, of one part or of several."""
-    parts = Path(name).parts
-    return path.parts[-len(parts) :] == parts
-
-
-def _some(names: Sequence[str]) -> str:
-    return ", ".join(names[:_NAMES_SHOWN]) + (", ..." if len(names) > _NAMES_SHOWN else "")

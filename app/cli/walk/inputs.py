@@ -1,7 +1,7 @@
 """Read the walks of `reembody walk` from tracks and captures, each in its scene."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from app.adapters.captures import CaptureError, read_capture_file
 from app.adapters.walks.track_table import UNITS_M, TrackReading, TrackTable, read_track_table
+from app.cli.people_list import labels_of, require_matched, some_of
 from app.cli.walk.people import People
 from app.cli.walk.scenes import NamedScenes
 from app.science.rig import RigError
@@ -26,7 +27,6 @@ from app.science.walking.recording import (
 from app.science.walking.records import OPEN_FLOOR, PlannedWalk, Track, WalkingError, known_for
 
 MOST_BYTES = 500_000_000
-_NAMES_SHOWN = 6
 _PERSON_COLUMNS = {"id", "subject", "person", "participant", "ped", "pers_id", "agent"}
 _TRACK_COLUMNS = tuple({axis, *(f"{axis}_{unit}" for unit in UNITS_M)} for axis in ("x", "y"))
 
@@ -102,8 +102,10 @@ def read_entries(
     """
     found, recorded, planners = Entries(), Recorded(), scenes.planned()
     columns: set[str] = set(people.columns)
-    for path in files:
-        table = _tracks(path, people, tables, numbers)
+    labels = labels_of(files)
+    read = [(path, _tracks(path, labels[path], people, tables, numbers)) for path in files]
+    _announce(scenes, people, read)
+    for path, table in read:
         columns |= set(table.columns)
         tracks = [_completed(track, path, people, scenes, table, numbers) for track in table.tracks]
         walks = [walk for track in tracks for walk in walks_of(track)]
@@ -112,10 +114,11 @@ def read_entries(
             raise ValueError(f"{path}: {_no_walk(tracks)}")
         found.left_out.extend(_standing(tracks, {walk.subject for walk in (*walks, *rounds)}))
         doubts = doubts_about(walks)
-        found.notices.extend(f"{path.name}: {text}" for text in (*table.assumed, *doubts))
+        found.notices.extend(f"{labels[path]}: {text}" for text in (*table.assumed, *doubts))
         if doubts:
             found.notices.append(
-                f"{path.name}: check the unit of x and y (--unit {', '.join(UNITS_M)}) and the rate"
+                f"{labels[path]}: check the unit of x and y (--unit {', '.join(UNITS_M)})"
+                " and the rate"
             )
         counts: Counter[str] = Counter()
         for walk in walks:
@@ -134,7 +137,8 @@ def read_entries(
             else:
                 found.entries.append(entry)
                 found.names.append(name)
-                if walk.subject == path.stem and path.name not in people.subjects:
+                own = labels[path].removesuffix(path.suffix)
+                if walk.subject == own and people.subject_of(path) is None:
                     found.named_by_file.add(walk.subject)
         found.left_out.extend(
             (
@@ -144,6 +148,7 @@ def read_entries(
             for number, walk in enumerate(rounds, start=1)
         )
     _require_known_people(people, found)
+    found.notices.extend(_about_rows(people, read, labels))
     if not found.entries:
         listed = "; ".join(f"{name}: {reason}" for name, reason in found.left_out)
         raise ValueError(f"no walk can be used. {listed}.")
@@ -164,13 +169,13 @@ def _completed(
     What the table itself says of a row counts before what the list of people says of its file.
     """
     if track.scene is None:
-        scene = people.scene_of(path.name, track.subject) or scenes.usual
+        scene = people.scene_of(path, track.subject, scenes) or scenes.usual
     else:
         at = f"{path}, line {table.scenes[track.scene]}"
         scene = scenes.find(track.scene, path.parent, at)
     others = {name: track.others[name] for name in numbers if name in track.others}
     for name in numbers:
-        given = people.number_of(name, path.name, track.subject)
+        given = people.number_of(name, path, track.subject)
         if name not in others and given is not None:
             others[name] = np.full(len(track.times_s), given)
     return replace(track, scene=scene, others=others)
@@ -230,25 +235,46 @@ def _require_known_people(people: People, found: Entries) -> None:
     That happens where files do not name their subject and the list does not name the files.
     """
     walked = sorted({entry.walk.subject for entry in found.entries})
-    listed = sorted({*people.statures_m, *people.subjects.values()})
+    listed = sorted({*people.statures_m, *(one for own in people.subjects.values() for one in own)})
     if listed and walked and not set(listed) & set(walked):
         raise ValueError(
-            f"--people lists {_some(listed)}, but the walks are of {_some(walked)}: nobody is in"
-            " both. Give the file of each walk in a column `file`, or the same names."
+            f"--people lists {some_of(listed)}, but the walks are of {some_of(walked)}: nobody is"
+            " in both. Give the file of each walk in a column `file`, or the same names."
         )
 
 
-def _some(names: list[str]) -> str:
-    return ", ".join(names[:_NAMES_SHOWN]) + (", ..." if names[_NAMES_SHOWN:] else "")
+def _announce(scenes: NamedScenes, people: People, read: Sequence[tuple[Path, TrackTable]]) -> None:
+    """Read all scenes that are named by their files, so that any row may name them by key."""
+    for named in people.scenes.values():
+        for name, at in named:
+            scenes.announce(name, people.folder, at)
+    for path, table in read:
+        for name, line in table.scenes.items():
+            scenes.announce(name, path.parent, f"{path}, line {line}")
+    people.resolve(scenes)
 
 
-def _tracks(path: Path, people: People, tables: Tables, numbers: Sequence[str]) -> TrackTable:
+def _about_rows(
+    people: People, read: Sequence[tuple[Path, TrackTable]], labels: Mapping[Path, str]
+) -> list[str]:
+    """Return a notice of each row of the list that is about no recording; raise ValueError."""
+    without = [
+        labels[path]
+        for path, table in read
+        if not any(people.mentions(path, track.subject) for track in table.tracks)
+    ]
+    return require_matched(people.files, [path for path, _ in read], without)
+
+
+def _tracks(
+    path: Path, label: str, people: People, tables: Tables, numbers: Sequence[str]
+) -> TrackTable:
     try:
         header = _header(path)
         if all(header & names for names in _TRACK_COLUMNS) or path.suffix.lower() == ".txt":
-            return _table(path, header, people, tables, numbers)
-        subject = people.subjects.get(path.name, path.stem)
-        walker = Walker(subject, path.name, people.statures_m.get(subject))
+            return _table(path, label, header, people, tables, numbers)
+        subject = people.subject_of(path) or label.removesuffix(path.suffix)
+        walker = Walker(subject, label, people.statures_m.get(subject))
         return TrackTable([track_of_motion(read_capture_file(path).motion, walker)], ())
     except (CaptureError, WalkingError, RigError) as error:
         option = " (--rate-hz)" if "frame rate is not specified" in str(error) else ""
@@ -265,7 +291,12 @@ def _header(path: Path) -> set[str]:
 
 
 def _table(
-    path: Path, header: set[str], people: People, tables: Tables, numbers: Sequence[str]
+    path: Path,
+    label: str,
+    header: set[str],
+    people: People,
+    tables: Tables,
+    numbers: Sequence[str],
 ) -> TrackTable:
     reading = TrackReading(
         rate_hz=tables.rate_hz,
@@ -273,11 +304,11 @@ def _table(
         statures_m=people.statures_m,
         numbers=tuple(numbers),
     )
-    table = read_track_table(path.read_bytes(), name=path.name, reading=reading)
+    table = read_track_table(path.read_bytes(), name=label, reading=reading)
     if path.suffix.lower() == ".txt" or header & _PERSON_COLUMNS:
         return table
     # Without a column of people, the file is about one person, named after the file.
-    subject = people.subjects.get(path.name, path.stem)
+    subject = people.subject_of(path) or label.removesuffix(path.suffix)
     stature_m = people.statures_m.get(subject)
     own = [replace(track, subject=subject, stature_m=stature_m) for track in table.tracks]
     return replace(table, tracks=own)

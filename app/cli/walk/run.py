@@ -266,7 +266,7 @@ def _course(entry: PlannedWalk) -> str:
 def _read(order: WalksOrder, numbers: tuple[str, ...]) -> Entries:
     check_names(numbers)
     tables, scenes = tables_of(order.rate_hz, order.unit), NamedScenes(order.scene)
-    people = read_people(order.people, scenes, numbers)
+    people = read_people(order.people, numbers)
     return read_entries(order.files, people, scenes, tables, numbers)
 
 

@@ -43,6 +43,8 @@ class NamedScenes:
         if usual is not None and usual != OPEN_FLOOR:
             scene = read_scene(usual)
             if scene is not None:
+                if usual not in shipped_scenes():
+                    _require_other_key(scene, Path(usual), f"--scene {usual}")
                 self.usual = self._add(scene, f"--scene {usual}")
                 if usual not in shipped_scenes():
                     self._files[Path(usual).resolve()] = scene.name
@@ -73,8 +75,18 @@ class NamedScenes:
             scene = _read_file(path)
         except ValueError as error:
             raise ValueError(f"{at}: scene {error}") from error
+        _require_other_key(scene, path, at)
         self._files[path] = self._add(scene, at)
         return scene.name
+
+    def announce(self, name: str, folder: Path, at: str) -> None:
+        """Read a scene that is named by its file's path, so that others may name its key.
+
+        Raises:
+            ValueError, OSError: as `find`, but a name that is no file is left to that.
+        """
+        if name != OPEN_FLOOR and name not in shipped_scenes() and (folder / name).is_file():
+            self.find(name, folder, at)
 
     def planned(self) -> WalkedScenes:
         """Return the planners of these scenes, and of those that are found later."""
@@ -88,6 +100,16 @@ class NamedScenes:
             )
         self.scenes[scene.name] = scene
         return scene.name
+
+
+def _require_other_key(scene: Scene, path: Path, at: str) -> None:
+    """Raise ValueError if a scene file has the key of a shipped scene, but is another one."""
+    shipped = shipped_scenes().get(scene.name)
+    if shipped is not None and shipped.read_bytes() != path.read_bytes():
+        raise ValueError(
+            f"{at}: {path.name} has the key {scene.name!r}, which is that of a scene of the"
+            " product; rows that name it would mean either. Give the file another key."
+        )
 
 
 def _read_file(path: Path) -> Scene:
