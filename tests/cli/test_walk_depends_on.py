@@ -127,6 +127,27 @@ def test_a_sample_needs_every_dependency_of_its_model(lab: Path) -> None:
     assert any("load_kg 20.00 is outside" in note for note in beyond["notes"])
 
 
+@pytest.mark.parametrize("load_kg", [-1000, 1000, 1e6, -1e300])
+@pytest.mark.filterwarnings("error")
+def test_what_nobody_walks_is_refused_with_what_the_model_has_seen(
+    lab: Path, load_kg: float
+) -> None:
+    """A number with which people would be faster or slower than anybody is refused by name."""
+    told = refusal("sample", lab / "model.npz", "--length", 3, "--with", f"load_kg={load_kg}")
+    assert f"load_kg is {load_kg:g}, and the model has seen 0.00 to 8.00" in told
+    assert f"People would be {'faster' if load_kg < 0 else 'slower'} than anybody walks" in told
+    assert "is not a number" in refusal(
+        "sample", lab / "model.npz", "--length", 3, "--with", "load_kg=8_0"
+    )
+
+
+def test_columns_of_long_times_stay_apart(lab: Path) -> None:
+    """Times of a very long way have a space between them."""
+    printed = run("sample", lab / "model.npz", "--length", 1000, "--with", "load_kg=60").stdout
+    (line,) = [one for one in printed.splitlines() if "duration" in one]
+    assert len(line.replace("duration, s", "").split()) == 5
+
+
 def test_an_evaluation_compares_with_the_model_without_the_dependency(
     lab: Path, tmp_path: Path
 ) -> None:

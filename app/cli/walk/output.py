@@ -172,7 +172,7 @@ def sample_text(done: Sampled) -> str:
         for at, one in enumerate(parameters)
     ]
     for name, column in columns:
-        cells = "".join(f"{value:>8.2f}" for value in np.percentile(column, PERCENTILES))
+        cells = "".join(f" {value:>7.2f}" for value in np.percentile(column, PERCENTILES))
         lines.append(f"  {name:<20}{cells}")
     lines += [f"  note: {text}" for text in done.notes]
     return "\n".join(lines)

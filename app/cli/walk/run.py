@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from app.adapters.captures import number_of
 from app.adapters.walks.model_file import is_model, read_model, write_model
 from app.cli.outputs import require_output, require_replaceable
 from app.cli.walk.inputs import Entries, read_entries, tables_of
@@ -148,7 +149,7 @@ class Sampled:
             )
         found.extend(
             f"{name} {self.dependencies[name]:.2f} is outside what the model has seen,"
-            f" {_seen(self.fit, name)}: this is a guess"
+            f" {self.fit.seen(name)}: this is a guess"
             for name in self.fit.outside(self.dependencies)
         )
         return (*found, *self.fit.caveats)
@@ -223,8 +224,9 @@ def carry_out_sample(order: SampleOrder) -> Sampled:
         if name not in dependencies:
             raise ValueError(
                 f"{order.model} depends on {name}: give --with {name}=NUMBER; its walks have"
-                f" {_seen(fit, name)}"
+                f" {fit.seen(name)}"
             )
+    fit.check_walkable(dependencies)
     model = fit.usual if order.which is None else fit.named(order.which)
     predictor = Predictor(model, SteeringFollower(rules))
     rng = np.random.default_rng(order.seed)
@@ -283,19 +285,10 @@ def _given(order: SampleOrder, further: tuple[str, ...]) -> dict[str, float]:
                 f"--with {text!r}: besides length, turning and stature, {order.model} depends"
                 f" {valid}"
             )
-        try:
-            found[name] = float(number)
-        except ValueError:
-            found[name] = float("nan")
+        found[name] = number_of(number)
         if not np.isfinite(found[name]):
             raise ValueError(f"--with {text!r}: {number!r} is not a number; write {name}=8, say")
     return found
-
-
-def _seen(fit: FittedWalking, name: str) -> str:
-    """Return the range of a dependency in the walks that a model was fitted to."""
-    values = fit.database.vectors[:, fit.database.names.index(name)]
-    return f"{values.min():.2f} to {values.max():.2f}"
 
 
 def _caveats(read: Entries, cut: int) -> tuple[str, ...]:

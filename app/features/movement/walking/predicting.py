@@ -15,7 +15,7 @@ from app.adapters.walks.model_file import read_model
 from app.features.movement.walking.reading import content_of, scene_of
 from app.features.movement.walking.sources import Cannot, Question, Store
 from app.science.walking.following import SteeringFollower
-from app.science.walking.models import FittedWalking, Prediction, Predictor
+from app.science.walking.models import FittedWalking, NobodyWalks, Prediction, Predictor
 from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.recording import dependencies_of
 from app.science.walking.records import STATURE, PlannedPath, WalkingError, further_of
@@ -88,6 +88,7 @@ def predict(store: Store, content_hash: str, question: Question) -> Json:
     path = path_of(question)
     try:
         dependencies, assumed = _dependencies(fit, path, question)
+        fit.check_walkable(dependencies)
         rng = np.random.default_rng(question.seed)
         usual = Predictor(fit.usual, follower)
         drawn = usual.predict(path, dependencies, question.count, rng)
@@ -97,6 +98,8 @@ def predict(store: Store, content_hash: str, question: Question) -> Json:
         }
         shown = drawn.vectors[: question.shown]
         walkers = _walkers(usual, path, shown, drawn.durations_s[: question.shown])
+    except NobodyWalks as error:
+        raise Cannot(str(error), "Give numbers that are nearer to those.") from None
     except WalkingError as error:
         raise Cannot(str(error), "Draw a path that is more like the model's walks.") from None
     return {

@@ -6,7 +6,14 @@
 
 from app.science.walking.models.annealing import StaticFit
 from app.science.walking.models.crps import covers, crps_s, iqr
-from app.science.walking.models.fitting import FitOptions, FittedWalking, fitted, restored, space_of
+from app.science.walking.models.fitting import (
+    FitOptions,
+    FittedWalking,
+    NobodyWalks,
+    fitted,
+    restored,
+    space_of,
+)
 from app.science.walking.models.prediction import Prediction, Predictor, predictor_for
 from app.science.walking.models.reading_choice import ReadingScore, person_folds, ranked_readings
 from app.science.walking.models.sampling import HEADROOM, MixtureSampler, density_of
@@ -29,6 +36,7 @@ __all__ = [
     "FitOptions",
     "FittedWalking",
     "MixtureSampler",
+    "NobodyWalks",
     "Prediction",
     "Predictor",
     "ProbabilisticModel",

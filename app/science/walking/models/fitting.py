@@ -17,6 +17,7 @@ from app.science.walking.maps import (
     check_persons,
 )
 from app.science.walking.models.annealing import StaticFit, static_fit
+from app.science.walking.models.prediction import slowest_s
 from app.science.walking.models.reading_choice import READINGS, ReadingScore, ranked_readings
 from app.science.walking.models.steering_models import (
     AdaptiveModel,
@@ -30,11 +31,19 @@ from app.science.walking.models.travel_time_model import (
     other_scaling,
     travel_time_model,
 )
-from app.science.walking.records import WalkingError, scaling_of
+from app.science.walking.recording import FASTEST_M_S
+from app.science.walking.records import LENGTH, WalkingError, scaling_of
 from app.science.walking.travel_times import Posterior
 
 LEAST_TO_CHOOSE = 8
 """Fewest people from which a reading is chosen; below, the time-aware reading is used."""
+
+
+_DRAWS = 200
+
+
+class NobodyWalks(WalkingError):
+    """Numbers that are far outside those of a model's walks: it would predict what nobody does."""
 
 
 @dataclass(frozen=True)
@@ -116,6 +125,39 @@ class FittedWalking:
             <= dependencies[name]
             <= base.vectors[:, at].max() + 1e-9
         ]
+
+    def seen(self, name: str) -> str:
+        """Return the range of a dependency in the walks that the model was fitted to."""
+        values = self.database.vectors[:, self.database.names.index(name)]
+        return f"{values.min():.2f} to {values.max():.2f}"
+
+    def check_walkable(self, dependencies: Mapping[str, float]) -> None:
+        """Refuse numbers so far outside those of the model's walks that nobody walks like that.
+
+        Raises:
+            NobodyWalks: by the median of `mixed` people are faster or slower than anybody. A model
+                without it takes its answer from its nearest walks, which people did walk.
+        """
+        outside = self.outside(dependencies)
+        if not outside or self.mixed is None:
+            return
+        length_m = dependencies[LENGTH]
+        with np.errstate(all="ignore"):
+            rng = np.random.default_rng(self.options.seed)
+            times_s, _ = self.mixed.agents(length_m, dependencies, _DRAWS, rng)
+            median_s = float(np.median(times_s))
+            speed_m_s = float(np.divide(length_m, median_s))
+        if speed_m_s <= FASTEST_M_S and median_s <= slowest_s(length_m):
+            return
+        numbers = "; ".join(
+            f"{name} is {dependencies[name]:g}, and the model has seen {self.seen(name)}"
+            for name in outside
+        )
+        kind = "faster" if speed_m_s > FASTEST_M_S else "slower"
+        raise NobodyWalks(
+            f"{numbers}. People would be {kind} than anybody walks: {speed_m_s:.2g} m/s, where"
+            f" {length_m / slowest_s(length_m):.2g} to {FASTEST_M_S:g} m/s are possible."
+        )
 
     @property
     def stat(self) -> StaticModel:

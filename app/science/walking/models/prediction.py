@@ -30,6 +30,11 @@ _ADJUSTED = 3
 """How often agents are slowed down or sped up towards a drawn travel time."""
 
 
+def slowest_s(length_m: float) -> float:
+    """Return the longest time that an agent may take for a path."""
+    return EXTRA_S + SLOWEST_S_PER_M * length_m
+
+
 @dataclass(frozen=True, eq=False)
 class Prediction:
     """Walks that a model predicts on a path.
@@ -143,7 +148,7 @@ class Predictor:
 
     def walked(self, path: PlannedPath, vectors: FloatArray, samples: int) -> Trajectories:
         """Let agents with vectors (S, n) walk a path, from this predictor's initial speed."""
-        limit_s = EXTRA_S + SLOWEST_S_PER_M * path.length_m
+        limit_s = slowest_s(path.length_m)
         course = Course(path, samples, limit_s, self.begin_m_s, self.brakes)
         return self.follower.follow(course, vectors)
 

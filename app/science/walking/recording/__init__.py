@@ -18,6 +18,7 @@ from app.science.walking.recording.segmentation import (
 )
 from app.science.walking.recording.tracks import Walker
 from app.science.walking.recording.walks import (
+    FASTEST_M_S,
     LeftOut,
     Recorded,
     dependencies_of,
@@ -26,6 +27,7 @@ from app.science.walking.recording.walks import (
 )
 
 __all__ = [
+    "FASTEST_M_S",
     "LeftOut",
     "Recorded",
     "SegmentationRules",

@@ -99,6 +99,10 @@ def test_a_prediction_takes_a_number_or_the_mean(walking_lab: Lab, model: Json) 
     )
     assert "does not depend on 'mood'" in refusal["message"]
     assert "load_kg" in refusal["remedy"]
+    far = query | {"others": {"load_kg": 1e6}}
+    refusal = error(walking_lab.operator.post(path, json=far), 422, "invalid_input")
+    assert "load_kg is 1e+06, and the model has seen 0.00 to 4.00" in refusal["message"]
+    assert "nearer to those" in refusal["remedy"]
     piece = {"dependencies": given["dependencies"], "held": "acceleration", "value": 0.7}
     ok(walking_lab.operator.post(f"/api/walking/models/{model['id']}/slice", json=piece))
 
@@ -128,6 +132,10 @@ def test_a_number_that_cannot_be_learnt_from_is_refused(walking_lab: Lab, walks:
     request = {"title": "No", "walk_set_id": walks["id"], "options": {"depends_on": ["stature"]}}
     refused = walking_lab.operator.post("/api/walking/models", json=request)
     assert "The name 'stature' is taken" in refused.text
+    request["options"] = {"depends_on": ["load_kg", "load_kg"]}
+    refused = walking_lab.operator.post("/api/walking/models", json=request)
+    assert refused.status_code == 422
+    assert "load_kg, load_kg: up to 3 are valid, each once" in refused.text
 
 
 @pytest.mark.one_engine
