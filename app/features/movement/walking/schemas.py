@@ -10,10 +10,11 @@ from pydantic import (
     Field,
     StringConstraints,
     WithJsonSchema,
+    field_validator,
 )
 
 from app.plain_titles import PlainTitle
-from app.science.walking.records import MOST_FURTHER, NAME_PATTERN, check_name
+from app.science.walking.records import MOST_FURTHER, NAME_PATTERN, check_name, check_names
 
 Kind = Literal["human", "synthetic"]
 State = Literal["fitting", "stopped", "ready", "failed"]
@@ -267,3 +268,10 @@ class NewModel(_Asked):
     walk_set_id: RecordId
     scene: SceneKey | None = None
     options: FitChoice = Field(default_factory=FitChoice)
+
+    @field_validator("options")
+    @classmethod
+    def _each_once(cls, options: FitChoice) -> FitChoice:
+        """Orders are checked, and not all choices: an earlier one may be stored that failed."""
+        check_names(options.depends_on)
+        return options
