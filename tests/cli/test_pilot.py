@@ -111,3 +111,7 @@ def test_records_of_different_pilots_are_not_mixed(tmp_path: Path) -> None:
     assert "seed" in again
     (tmp_path / "text.jsonl").write_text("hello\n", encoding="utf-8")
     assert "no record of a pilot" in _COMMAND.refusal("merge", tmp_path / "text.jsonl")
+    cohort = tmp_path / "cohort.jsonl"
+    cohort.write_text('{"format": 1, "kind": "cohort"}\n{"number": 1}\n', encoding="utf-8")
+    told = _COMMAND.refusal("power", _STUDY, *small, "--out", cohort)
+    assert "it is the record of a cohort, and not of a power curve; name another file" in told

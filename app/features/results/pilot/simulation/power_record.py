@@ -87,10 +87,17 @@ def _read(path: Path) -> tuple[Record, int]:
     lines = whole.decode("utf-8", errors="replace").split("\n")
     try:
         header = json.loads(lines[0])
+        if isinstance(header, dict) and "kind" in header:
+            kind = header["kind"]
+            raise ValueError(
+                f"it is the record of a {kind}, and not of a power curve; name another file"
+            )
         known = isinstance(header, dict) and header.get("format") == FORMAT
         results = dict(_chunks(lines[1:])) if known else {}
-    except (ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{path} is no record of a pilot: {error}") from error
+    except ValueError as error:
+        raise ValueError(f"{path} is no record of a pilot's power: {error}") from error
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"{path} is no record of a pilot's power: a line lacks {error}") from error
     if not known:
         raise ValueError(f"{path} is no record of a pilot; give a file that --out wrote")
     return Record(header, results), len(whole) + 1
