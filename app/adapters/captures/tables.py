@@ -126,6 +126,8 @@ def _number(cell: str, title: str, line: int) -> float:
     if text.lower() in _MISSING:
         return math.nan
     try:
+        if "_" in text:  # in Python 8_0 is 80
+            raise ValueError
         return float(text)
     except ValueError:
         raise CaptureError(

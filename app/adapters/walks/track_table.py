@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from app.adapters.captures import CaptureError, text_lines
+from app.adapters.captures import CaptureError, number_of, text_lines
 from app.adapters.walks.walk_columns import (
     WalkColumns,
     numbers_of,
@@ -260,10 +260,7 @@ def _sample(line: str, number: int, layout: _Layout) -> tuple[str, str, tuple[fl
         raise CaptureError(f"the row has {len(cells)} columns only.", line=number)
     values = []
     for column in columns:
-        try:
-            value = float(cells[column].strip().strip('"'))
-        except ValueError:
-            value = math.nan
+        value = number_of(cells[column].strip().strip('"'))
         if not math.isfinite(value):
             raise CaptureError(
                 f"column {column + 1} contains {cells[column].strip()!r}, not a finite number:"

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.adapters.captures import CaptureError
+from app.adapters.captures import CaptureError, number_of
 from app.science.rotations import FloatArray
-from app.science.walking.records import is_name
+from app.science.walking.records import WalkingError, check_name, is_name
 
 SCENE = "scene"
 UNKNOWN = ("", "nan", "na")
@@ -32,6 +32,7 @@ class WalkColumns:
         scenes: the line at which each scene is first named.
         not_numbers: the first cell of each column that turned out not to be one of numbers.
         seen: the columns in which there was a number.
+        twice: names that several columns have, so that none of them counts.
     """
 
     scene: int = -1
@@ -41,6 +42,7 @@ class WalkColumns:
     scenes: dict[str, int] = field(default_factory=dict)
     not_numbers: dict[str, str] = field(default_factory=dict)
     seen: set[str] = field(default_factory=set)
+    twice: tuple[str, ...] = ()
 
     def read(self, cells: Sequence[str], line: int) -> tuple[str, list[float]]:
         """Return the scene and the numbers of a row; raise CaptureError with its line."""
@@ -53,10 +55,7 @@ class WalkColumns:
     def _number(self, name: str, cell: str, line: int) -> float:
         if cell.lower() in UNKNOWN:
             return math.nan
-        try:
-            value = float(cell)
-        except ValueError:
-            value = math.nan
+        value = number_of(cell)
         if math.isfinite(value):
             self.seen.add(name)
             return value
@@ -69,12 +68,19 @@ class WalkColumns:
     @property
     def usable(self) -> list[str]:
         """The names of the columns that contain numbers, and nothing else."""
-        return [name for name in self.numbers if name in self.seen and name not in self.not_numbers]
+        return [
+            name
+            for name in self.numbers
+            if name in self.free and name in self.seen and name not in self.not_numbers
+        ]
 
     @property
     def spoilt(self) -> list[str]:
-        """What is wrong with columns that contain numbers, but not only those."""
-        return [told for name, told in self.not_numbers.items() if name in self.seen]
+        """What is wrong with columns that contain numbers: other cells, their name, or a twin."""
+        own = [told for name, told in self.not_numbers.items() if name in self.seen]
+        badly_named = (name for name in self.numbers if not is_name(name))
+        own += [_misnamed(name) for name in badly_named if name in self.seen]
+        return [*own, *(f"the column {name} is there twice: keep one" for name in self.twice)]
 
 
 def walk_columns(
@@ -91,15 +97,32 @@ def walk_columns(
         taken: indices of the columns of person, time and place.
         wanted: the further numbers that are read; None for all columns that are numbers.
         scenes: whether a column of scenes is read.
+
+    Raises:
+        CaptureError: a column that is read is there twice.
     """
     found = (at for at, name in enumerate(names) if scenes and name.lower() == SCENE)
     scene = next(found, -1)
     free = [(name, at) for at, name in enumerate(names) if at not in (*taken, scene)]
-    valid = tuple(name for name, _ in free if is_name(name))
+    twice = {name for name in names if name and names.count(name) > 1}
+    read = {names[at] for at in (*taken, scene) if at >= 0} | {*(wanted or ())}
+    if both := sorted(twice & read):
+        raise CaptureError(f"the column {', '.join(both)} is there twice: keep one of each name.")
+    valid = tuple(name for name, _ in free if is_name(name) and name not in twice)
     if wanted is None:
-        return WalkColumns(scene, {name: at for name, at in free if name in valid}, free=valid)
+        own = {name: at for name, at in free if name and name not in twice}
+        return WalkColumns(scene, own, free=valid, twice=tuple(sorted(twice)))
     chosen = {name: at for name, at in free if name in wanted}
     return WalkColumns(scene, chosen, required=True, free=valid)
+
+
+def _misnamed(name: str) -> str:
+    """Return why a column of numbers cannot be asked for by its name."""
+    try:
+        check_name(name)
+    except WalkingError as error:
+        return f"the column {name!r} was passed over. {error}"
+    return ""
 
 
 def pieces(

@@ -49,3 +49,34 @@ def test_all_columns_that_are_numbers_can_be_read() -> None:
     table = read_track_table(wrong.encode(), name="a.csv", reading=reading)
     assert table.numbers == ("gaze",)
     assert table.spoilt == ("line 8: column load_kg contains '8 kg', not a finite number",)
+
+
+def test_a_column_that_is_there_twice_is_refused_if_it_is_read() -> None:
+    """Which of two columns counts is not guessed; without names both are passed over and noted."""
+    for name in ("load_kg", "x"):
+        data = f"id,t,x,y,load_kg,{name}\nA,0,0,0,8,9\nA,1,0,1,8,9\n".encode()
+        with pytest.raises(CaptureError, match=f"the column {name} is there twice"):
+            read_track_table(data, name="a.csv", reading=TrackReading(numbers=("load_kg",)))
+    data = b"id,t,x,y,load_kg,load_kg\nA,0,0,0,8,9\nA,1,0,1,8,9\n"
+    table = read_track_table(data, name="a.csv", reading=TrackReading(numbers=None))
+    assert (table.numbers, table.columns) == ((), ())
+    assert table.spoilt == ("the column load_kg is there twice: keep one",)
+
+
+def test_a_column_of_numbers_with_another_name_than_is_valid_is_noted() -> None:
+    """A number that cannot be asked for by its name is not lost without a word."""
+    data = b"id,t,x,y,load kg,my note\nA,0,0,0,8,a\nA,1,0,1,8,b\n"
+    table = read_track_table(data, name="a.csv", reading=TrackReading(numbers=None))
+    (told,) = table.spoilt
+    assert "the column 'load kg' was passed over. The name 'load kg' is not valid" in told
+    assert (table.numbers, table.columns) == ((), ())
+
+
+@pytest.mark.parametrize("row", ["A,0,0,0,8_0", "A,0,0_1,0,8"])
+def test_an_underscore_does_not_belong_in_a_number(row: str) -> None:
+    """8_0 is no number in a table, neither in its own columns nor in those of further numbers."""
+    data = f"id,t,x,y,load_kg\n{row}\nA,1,0,1,8\n".encode()
+    with pytest.raises(
+        CaptureError, match=r"line 2: column .* contains '.*_.*', not a finite number"
+    ):
+        read_track_table(data, name="a.csv", reading=TrackReading(numbers=("load_kg",)))
