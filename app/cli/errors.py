@@ -9,7 +9,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
-from pathlib import Path
 from typing import NoReturn
 
 from app.errors import ReembodyError, as_sentences, file_problem
@@ -31,12 +30,6 @@ def warn(message: str) -> None:
     """Print a warning of a command that continues."""
     # Replaces the progress line of a long command on a terminal.
     print(f"{ERASE_LINE if sys.stderr.isatty() else ''}reembody: {message}", file=sys.stderr)
-
-
-def require_folder_of(out: Path | None) -> None:
-    """Raise ValueError if the folder of an output file is missing, before any work is done."""
-    if out is not None and not out.absolute().parent.is_dir():
-        raise ValueError(f"--out {out}: there is no folder {out.absolute().parent}")
 
 
 @contextmanager

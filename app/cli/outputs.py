@@ -3,13 +3,24 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from app.cli.errors import require_folder_of
+
+def require_folder_of(out: Path | None) -> None:
+    """Raise ValueError if the folder of an output file is missing, before any work is done."""
+    if out is not None and not out.absolute().parent.is_dir():
+        raise ValueError(f"--out {out}: there is no folder {out.absolute().parent}")
 
 
 def require_output(out: Path | None, *inputs: Path | str | None) -> None:
-    """Raise ValueError if the folder of an output file is missing, or if it is one of the inputs.
+    """Check an output file that may not be one of the inputs.
 
-    Links are followed. An input may also be a name that is no file.
+    Links are followed.
+
+    Args:
+        out: the file to write; None for none.
+        inputs: the files that are read. One may also be a name that is no file, such as a key.
+
+    Raises:
+        ValueError: its folder is missing, or it is one of the inputs.
     """
     require_folder_of(out)
     if out is None:
@@ -23,9 +34,15 @@ def require_output(out: Path | None, *inputs: Path | str | None) -> None:
 
 
 def require_replaceable(out: Path, title: str, is_one: Callable[[Path], bool]) -> None:
-    """Raise ValueError if there is a file already that is of another kind than the one written.
+    """Check that no file of another kind is lost; an empty one may be replaced.
 
-    `title` says what is written, as in "a walking model". An empty file may be replaced.
+    Args:
+        out: the file to write.
+        title: what is written, as in "a walking model".
+        is_one: whether a file is one.
+
+    Raises:
+        ValueError: there is a file already that is of another kind.
     """
     if out.is_file() and out.stat().st_size and not is_one(out):
         raise ValueError(

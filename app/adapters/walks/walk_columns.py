@@ -121,7 +121,7 @@ def _misnamed(name: str) -> str:
     try:
         check_name(name)
     except WalkingError as error:
-        return f"the column {name!r} was passed over. {error}"
+        return f"the column {name!r} was passed over. {str(error).rstrip('.')}"
     return ""
 
 

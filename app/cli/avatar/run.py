@@ -11,8 +11,7 @@ from app.cli.avatar.library import Library
 from app.cli.avatar.saving import Saved, ToSave, based_on, change_json
 from app.cli.avatar.sources import Source, read, read_file, text_of, versions_of
 from app.cli.avatars import check_key, check_words
-from app.cli.errors import require_folder_of
-from app.cli.outputs import require_output
+from app.cli.outputs import require_folder_of, require_output
 from app.protocol import ConfigError, did_you_mean
 from app.protocol.avatar import avatar_text, content_of, loaded, single_text
 from app.protocol.avatar_editing import (

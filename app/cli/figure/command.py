@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from app.cli.errors import fail, reported, require_folder_of
+from app.cli.errors import fail, reported
+from app.cli.outputs import require_folder_of
 
 
 def figure(

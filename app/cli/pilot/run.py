@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from app.cli.errors import require_folder_of
+from app.cli.outputs import require_folder_of
 from app.cli.pilot.inputs import (
     StudyFile,
     has_assumptions,

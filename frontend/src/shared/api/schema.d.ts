@@ -13346,7 +13346,7 @@ export interface components {
          *     stature, if only some walks have it, so that no model can depend on it. `assumed`: what a table
          *     did not say and was assumed. `doubts`: why its unit or its rate is doubtful. `numbers`: further
          *     numbers that a model can depend on, by name; `changing_numbers` change during every walk, so
-         *     that none can; `spoilt_numbers` says which columns contain text among their numbers.
+         *     that none can; `spoilt_numbers` says which columns of numbers were passed over, and why.
          */
         readonly WalksSummary: {
             /**
