@@ -117,3 +117,13 @@ def test_walks_are_evaluated_in_their_scenes(lab: Path) -> None:
     found = figures(*asked)
     assert found["walks"] == 5
     assert [one["walk"] for one in found["left_out"]] == ["walker-0-2.csv, 0, walk 1"]
+
+
+def test_every_problem_of_a_scene_file_is_told_with_its_line_and_remedy(lab: Path) -> None:
+    """A scene that cannot be read is refused with a line for each problem, and what to do."""
+    bad = lab / "bad.yaml"
+    bad.write_text("key: Bad\nbounds_m: [-2, -2, 2]\nobstacles:\n  - {shape: round, name: pole}\n")
+    told = refusal("sample", lab / "none.npz", "--scene", bad, "--from", "a", "--to", "b")
+    problems = told.splitlines()[1:]
+    assert [one.partition(":")[0].strip() for one in problems] == ["line 1", "line 2", "line 4"]
+    assert problems[1].endswith("The list ends after 3 values. Add the missing values.")

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from app.adapters.walks import load_scene, load_shipped, shipped_scenes
-from app.errors import missing_file
+from app.errors import as_sentences, missing_file
 from app.protocol import ConfigError
 from app.science.walking.planning import WalkedScenes
 from app.science.walking.records import OPEN_FLOOR
@@ -116,7 +116,9 @@ def _read_file(path: Path) -> Scene:
     try:
         return load_scene(path.read_text(encoding="utf-8-sig"))
     except ConfigError as error:
-        problems = "; ".join(f"line {one.line}: {one.message}" for one in error.problems)
-        raise ValueError(f"{path}: {problems}") from error
+        problems = "\n".join(
+            f"  line {one.line}: {as_sentences(one.message, one.remedy)}" for one in error.problems
+        )
+        raise ValueError(f"{path}:\n{problems}") from error
     except UnicodeDecodeError as error:
         raise ValueError(f"{path}: not UTF-8 text ({error})") from error

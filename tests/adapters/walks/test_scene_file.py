@@ -3,6 +3,7 @@
 import json
 import re
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -153,3 +154,12 @@ def test_paths_turn_at_both_workplaces() -> None:
         turning.append([turning_per_m(path.points_m) for path in paths])
     assert sum(one > 0.1 for one in turning[0]) == 3
     assert min(turning[1]) >= 0.3
+
+
+def test_the_documented_example_is_a_scene_with_every_shape() -> None:
+    """The example in docs/walking.md can be read, and its obstacles have all four shapes."""
+    page = (Path(__file__).parents[3] / "docs" / "walking.md").read_text(encoding="utf-8")
+    block = page[page.index("    key: my-lab") : page.index("| Key | What it says |")]
+    scene = load_scene("\n".join(line.removeprefix("    ") for line in block.splitlines()))
+    assert [one.name for one in scene.obstacles] == ["table", "pole", "screen", "corner"]
+    assert set(re.findall(r"shape: (\w+)", block)) == {"box", "disc", "wall", "polygon"}
