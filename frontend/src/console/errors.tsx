@@ -5,7 +5,12 @@ import { useTexts } from "./i18n";
 
 export function useErrorTexts(): ErrorTexts {
   const { t } = useTexts();
-  return errorTexts(t);
+  const files = {
+    line: t("error.line"),
+    changed: (name: string) => t("error.fileChanged", { name }),
+    changedRemedy: t("error.fileChangedRemedy"),
+  };
+  return { ...errorTexts(t), files };
 }
 
 interface FailureProps {

@@ -124,9 +124,9 @@ def table_of(data: bytes, source: TrackSource) -> TrackTable:
         return replace(found, tracks=tracks)
     except CaptureError as error:
         at = f"line {error.line}: " if error.line else ""
-        raise Cannot(f"{source.name}, {at}{error.reason}", "Correct the table.") from None
+        raise Cannot(f"in {source.name}, {at}{error.reason}", "Correct the table.") from None
     except WalkingError as error:
-        raise Cannot(f"{source.name}: {error}", "Correct the table.") from None
+        raise Cannot(f"in {source.name}: {error}", "Correct the table.") from None
 
 
 def _check_scenes(table: TrackTable, source: TrackSource) -> None:
@@ -135,7 +135,7 @@ def _check_scenes(table: TrackTable, source: TrackSource) -> None:
     for scene, line in table.scenes.items():
         if scene not in known and scene != OPEN_FLOOR:
             raise Cannot(
-                f"{source.name}, line {line}: there is no scene {scene!r}; scenes are"
+                f"in {source.name}, line {line}: there is no scene {scene!r}; scenes are"
                 f" {', '.join(known) or 'none'}, and {OPEN_FLOOR!r}",
                 "Correct the column scene, or add the scene's file first.",
             )
@@ -204,9 +204,9 @@ def _track_of_capture(store: Store, name: str, capture: CapturedWalk) -> Track:
         options = TrackingOptions(body=capture.body)
         return track_of_motion(found.motion, Walker(name, capture.name), options)
     except CaptureError as error:
-        raise Cannot(f"{capture.name}: {error.reason}") from None
+        raise Cannot(f"in {capture.name}: {error.reason}") from None
     except (WalkingError, RigError) as error:
-        raise Cannot(f"{capture.name}: {error}") from None
+        raise Cannot(f"in {capture.name}: {error}") from None
 
 
 def _synthetic(source: PopulationSource) -> list[PlannedWalk]:

@@ -1,5 +1,5 @@
 /** Read a configuration's file: what is no configuration is refused with its place and remedy. */
-import { ApiError, type Problem } from "@shared/api/request";
+import { ApiError, type Problem, textOf } from "@shared/api/request";
 import { bytes } from "@shared/format";
 import type { useTexts } from "../i18n";
 import { avatars } from "./api";
@@ -25,7 +25,7 @@ export async function readAvatarFile(
     const sizes = { size: bytes(file.size, language), most: bytes(MOST_BYTES, language) };
     throw refused(t("avatars.import.tooLarge", sizes));
   }
-  const text = await file.text();
+  const text = await textOf(file);
   const { ok, configuration, problems } = await avatars.check(text);
   if (ok && configuration) return { name: shortened(file.name), configuration };
   // Of a file in one line, the line says nothing.

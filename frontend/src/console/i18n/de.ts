@@ -39,6 +39,10 @@ export const de: Record<keyof typeof en, string> = {
     "Prüfen Sie, ob er läuft und ob dieser Rechner in seinem Netz ist. Auf dem Server ist nichts verloren gegangen.",
   "error.unexpected": "Auf dieser Seite ist etwas schiefgegangen.",
   "error.retry": "Noch einmal versuchen",
+  "error.line": "Zeile",
+  "error.fileChanged": "Die Datei {{name}} hat sich geändert, seit Sie sie gewählt haben.",
+  "error.fileChangedRemedy":
+    "Es wurde nichts gesendet. Wählen Sie die Datei noch einmal und senden Sie sie, wie sie jetzt ist.",
   "login.title": "Anmelden",
   "login.lead": "Re-Embodiment-Studien durchführen, beobachten und auswerten.",
   "login.username": "Benutzername",

@@ -1,6 +1,7 @@
 /** The steps from a file to stored answers: choose it, map its columns, check the preview. */
 import { Button, FileButton, Modal } from "@mantine/core";
 import { type AnswerImport, type ImportPreview, imports } from "@shared/api/imports";
+import { bytesOf } from "@shared/api/request";
 import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
@@ -48,9 +49,16 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
     }) => imports.preview(study.key, wish.file.text, wish.instrument, wish.heads),
   });
   const [stranger, setStranger] = useState<string | null>(null);
+  const [unread, setUnread] = useState<unknown>(null);
   const choose = async (chosen: File | null): Promise<void> => {
     if (chosen === null) return;
-    const opened = { name: chosen.name.slice(-200), text: decoded(await chosen.arrayBuffer()) };
+    const content = await bytesOf(chosen).catch((error: unknown) => {
+      setUnread(error);
+      return null;
+    });
+    if (content === null) return;
+    setUnread(null);
+    const opened = { name: chosen.name.slice(-200), text: decoded(content) };
     const text = isText(opened.text);
     setStranger(text ? null : chosen.name);
     setFile(text ? opened : null);
@@ -68,6 +76,7 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
           {t("imports.noTable.body")}
         </Notice>
       )}
+      {unread !== null && <Failure error={unread} />}
       {previewing.isError && <Failure error={previewing.error} />}
       {file !== null && previewing.data !== undefined && (
         <PreviewedImport

@@ -1,5 +1,6 @@
 /** The scenes: those of the product and the lab's own, each drawn from above. */
 import { Button, FileButton, Select, Text, Title } from "@mantine/core";
+import { textOf } from "@shared/api/request";
 import { type Scene, type SceneListed, walking } from "@shared/api/walking";
 import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
@@ -26,7 +27,7 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
   const [chosenKey, setChosenKey] = useState(scenes[0]?.key ?? "");
   const key = scenes.some((one) => one.key === chosenKey) ? chosenKey : (scenes[0]?.key ?? "");
   const add = useMutation({
-    mutationFn: async (file: File) => walking.addScene(await file.text()),
+    mutationFn: async (file: File) => walking.addScene(await textOf(file)),
     onSuccess: async (scene) => {
       await queries.invalidateQueries({ queryKey: scenesQuery.queryKey });
       setChosenKey(scene.key);

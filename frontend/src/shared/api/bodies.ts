@@ -44,7 +44,7 @@ export const bodies = {
   measure: (hash: string) =>
     answer<BodyView>(server.POST("/api/humanoids/{content_hash}/measure", at(hash))),
   upload: (file: File, onSent: (share: number) => void) =>
-    upload<BodyView>(`/api/humanoids?${new URLSearchParams({ name: file.name })}`, file, onSent),
+    upload<BodyView>(`/api/humanoids?${new URLSearchParams({ name: file.name })}`, [file], onSent),
   fileUrl: (hash: string) => `${address(hash)}/file`,
   /** The model's file as it was uploaded. */
   file: async (hash: string): Promise<ArrayBuffer> =>

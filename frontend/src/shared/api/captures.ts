@@ -111,7 +111,7 @@ export async function uploadCapture(
   files: CaptureFiles,
   onSent: (share: number) => void,
 ): Promise<Uploaded> {
-  const whole = new Blob([files.file, ...(files.companion === null ? [] : [files.companion])]);
-  const { stored, isNew } = await upload<Capture>(uploadUrl(files), whole, onSent);
+  const sent = [files.file, ...(files.companion === null ? [] : [files.companion])];
+  const { stored, isNew } = await upload<Capture>(uploadUrl(files), sent, onSent);
   return { capture: stored, isNew };
 }

@@ -59,7 +59,8 @@ export async function answer<Body>(call: Promise<Outcome>): Promise<Body> {
 //
 //     Failure
 //     |- ApiError        the server answered and said what is wrong and what to do
-//     `- Unreachable     no answer: the network, or the server is not running
+//     |- Unreachable     no answer: the network, or the server is not running
+//     `- FileChanged     nothing was sent: the file is not what it was when it was chosen
 
 export interface Problem {
   readonly path?: string | null;
@@ -104,6 +105,45 @@ export class ApiError extends Error {
 export class Unreachable extends Error {
   override readonly name = "Unreachable";
 }
+
+/** The file was changed or removed after it was chosen, and the browser does not read it then. */
+export class FileChanged extends Error {
+  override readonly name = "FileChanged";
+
+  constructor(readonly fileName: string) {
+    super(`${fileName} has changed since it was chosen.`);
+  }
+}
+
+/**
+ * Why files were not sent: a browser reports a changed file like a server that does not answer, so
+ * a byte of each is read.
+ */
+export async function whyNotSent(
+  files: readonly File[],
+  cause?: unknown,
+): Promise<FileChanged | Unreachable> {
+  for (const file of files) {
+    try {
+      await file.slice(0, 1).arrayBuffer();
+    } catch {
+      return new FileChanged(file.name);
+    }
+  }
+  return new Unreachable("The server cannot be reached.", { cause });
+}
+
+/** The bytes of a chosen file; throws FileChanged if it is not what it was then. */
+export const bytesOf = (file: File): Promise<ArrayBuffer> =>
+  file.arrayBuffer().catch(() => {
+    throw new FileChanged(file.name);
+  });
+
+/** The text of a chosen file; throws FileChanged if it is not what it was then. */
+export const textOf = (file: File): Promise<string> =>
+  file.text().catch(() => {
+    throw new FileChanged(file.name);
+  });
 
 /**
  * The error in a response body, or a generic one if a proxy or a crash answered instead. Tells the

@@ -1,5 +1,5 @@
 /** Upload a file and follow how much of it was sent. */
-import { accountHeader, errorFromBody, Unreachable } from "./request";
+import { accountHeader, errorFromBody, whyNotSent } from "./request";
 
 export interface Stored<Answer> {
   readonly stored: Answer;
@@ -8,13 +8,13 @@ export interface Stored<Answer> {
 }
 
 /**
- * Post a file; `onSent` is called with the fraction of bytes sent so far.
+ * Post one or several files as one body; `onSent` is called with the fraction of bytes sent so far.
  *
  * Uses XMLHttpRequest because `fetch` does not report the progress of an upload.
  */
 export function upload<Answer>(
   url: string,
-  file: Blob,
+  files: readonly File[],
   onSent: (share: number) => void,
 ): Promise<Stored<Answer>> {
   return new Promise((resolve, reject) => {
@@ -32,7 +32,7 @@ export function upload<Answer>(
         resolve({ stored: request.response as Answer, isNew: request.status === 201 });
       } else reject(errorFromBody(request.status, request.response));
     };
-    request.onerror = () => reject(new Unreachable("The server cannot be reached."));
-    request.send(file);
+    request.onerror = () => void whyNotSent(files).then(reject);
+    request.send(files.length === 1 ? files[0] : new Blob([...files]));
   });
 }

@@ -1,5 +1,5 @@
 /** Requests for walking: scenes, sets of walks, models and their predictions. */
-import { accountHeader, answer, errorFromBody, server, Unreachable } from "./request";
+import { accountHeader, answer, errorFromBody, server, whyNotSent } from "./request";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];
@@ -105,8 +105,8 @@ async function addTable(table: Table): Promise<WalkSet> {
     credentials: "same-origin",
     headers: { "content-type": "application/octet-stream", ...accountHeader() },
     body: table.file,
-  }).catch((cause: unknown) => {
-    throw new Unreachable("The server cannot be reached.", { cause });
+  }).catch(async (cause: unknown) => {
+    throw await whyNotSent([table.file], cause);
   });
   const body: unknown = await response.json().catch(() => null);
   if (!response.ok) throw errorFromBody(response.status, body);

@@ -1,7 +1,7 @@
 /** A short message on the page: what the problem is, and what to do about it. */
 import { Button } from "@mantine/core";
 import type { JSX, ReactNode } from "react";
-import { ApiError, Unreachable } from "../api/request";
+import { ApiError, FileChanged, type Problem, Unreachable } from "../api/request";
 import { Icon, type IconName } from "./Icon";
 import classes from "./Notice.module.css";
 import { isUnloaded } from "./unloaded";
@@ -58,11 +58,21 @@ export interface ErrorTexts {
   readonly unexpected: string;
   readonly retry: string;
   readonly unloaded: string;
+  /** Those of pages that take files. */
+  readonly files?: FileTexts;
+}
+
+interface FileTexts {
+  /** What is put before the number of a line. */
+  readonly line: string;
+  /** The message for a file that is not what it was when it was chosen. */
+  readonly changed: (name: string) => string;
+  readonly changedRemedy: string;
 }
 
 /** A page's own wording of errors, which it keeps under these keys. */
 export const errorTexts = (
-  t: (key: `error.${Exclude<keyof ErrorTexts, "unloaded">}` | "page.unknown") => string,
+  t: (key: `error.${Exclude<keyof ErrorTexts, "unloaded" | "files">}` | "page.unknown") => string,
 ): ErrorTexts => ({
   unreachable: t("error.unreachable"),
   unreachableRemedy: t("error.unreachableRemedy"),
@@ -77,7 +87,7 @@ interface ErrorNoticeProps {
   readonly onRetry?: (() => void) | undefined;
 }
 
-/** An error of the server as the reader needs it: the message, the value, the remedy. */
+/** An error of the server as the reader needs it: the message, every problem of a file, the remedy. */
 export function ErrorNotice({ error, texts, onRetry }: ErrorNoticeProps): JSX.Element {
   const { message, remedy } = describe(error, texts);
   const retry =
@@ -86,7 +96,29 @@ export function ErrorNotice({ error, texts, onRetry }: ErrorNoticeProps): JSX.El
         {texts.retry}
       </Button>
     );
-  return <Notice tone="bad" title={message} remedy={remedy} actions={retry} />;
+  const problems = error instanceof ApiError && error.remedy !== null ? error.details : [];
+  return (
+    <Notice tone="bad" title={message} remedy={remedy} actions={retry}>
+      {problems.length > 0 && (
+        <ul className={classes.problems}>
+          {problems.map((one) => (
+            <li key={`${one.line} ${one.path} ${one.message}`}>
+              {problemText(one, texts.files?.line ?? "")}
+            </li>
+          ))}
+        </ul>
+      )}
+    </Notice>
+  );
+}
+
+/** A problem of a file in a line: its place, what is wrong, what to do. */
+export function problemText(problem: Problem, lineWord: string): string {
+  const { line, path, message, remedy } = problem;
+  const numbered = typeof line === "number" && line > 0 ? `${lineWord} ${line}` : "";
+  const place = [numbered, path ?? ""].filter((one) => one !== "").join(", ");
+  const said = [message, remedy ?? ""].filter((one) => one !== "").join(" ");
+  return place === "" ? said : `${place}: ${said}`;
 }
 
 /** Message and remedy of any failure; details, if any, are appended to the message. */
@@ -101,10 +133,19 @@ export function describe(
   if (error instanceof Unreachable) {
     return { message: texts.unreachable, remedy: texts.unreachableRemedy };
   }
+  if (error instanceof FileChanged && texts.files !== undefined) {
+    return { message: texts.files.changed(error.fileName), remedy: texts.files.changedRemedy };
+  }
   // The page says beside it why, and what to do.
   if (isUnloaded(error)) return { message: texts.unloaded, remedy: "" };
   return { message: texts.unexpected, remedy: error instanceof Error ? error.message : "" };
 }
 
-/** Capitalise a message: the server's start in lower case, because logs put words before them. */
-const sentence = (message: string): string => message.charAt(0).toUpperCase() + message.slice(1);
+/**
+ * Capitalise a message: the server's start in lower case, because logs put words before them. A
+ * name at the beginning, of a file or a column, stays as it is: only a plain word is capitalised.
+ */
+export const sentence = (message: string): string =>
+  /^\p{Ll}+(?=[\s,;:’'-]|$)/u.test(message)
+    ? message.charAt(0).toUpperCase() + message.slice(1)
+    : message;
