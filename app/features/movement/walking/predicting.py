@@ -15,7 +15,13 @@ from app.adapters.walks.model_file import read_model
 from app.features.movement.walking.reading import content_of, scene_of
 from app.features.movement.walking.sources import Cannot, Question, Store
 from app.science.walking.following import SteeringFollower
-from app.science.walking.models import FittedWalking, NobodyWalks, Prediction, Predictor
+from app.science.walking.models import (
+    FittedWalking,
+    NobodyWalks,
+    Prediction,
+    Predictor,
+    TooFewArriveError,
+)
 from app.science.walking.planning import LazyThetaPlanner
 from app.science.walking.recording import dependencies_of
 from app.science.walking.records import STATURE, PlannedPath, WalkingError, further_of
@@ -159,8 +165,12 @@ def _fixed(
     path: PlannedPath,
     dependencies: dict[str, float],
     rng: np.random.Generator,
-) -> Json:
-    found: Prediction = predictor.predict(path, dependencies, 1, rng)
+) -> Json | None:
+    """Return the one walk of a model that does not draw; None if none of its agents arrives."""
+    try:
+        found: Prediction = predictor.predict(path, dependencies, 1, rng)
+    except TooFewArriveError:
+        return None
     return {"duration_s": float(found.durations_s[0]), "vector": found.vectors[0].tolist()}
 
 

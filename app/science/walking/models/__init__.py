@@ -14,7 +14,12 @@ from app.science.walking.models.fitting import (
     restored,
     space_of,
 )
-from app.science.walking.models.prediction import Prediction, Predictor, predictor_for
+from app.science.walking.models.prediction import (
+    Prediction,
+    Predictor,
+    TooFewArriveError,
+    predictor_for,
+)
 from app.science.walking.models.reading_choice import ReadingScore, person_folds, ranked_readings
 from app.science.walking.models.sampling import HEADROOM, MixtureSampler, density_of
 from app.science.walking.models.steering_models import ProbabilisticModel, SteeringModel
@@ -43,6 +48,7 @@ __all__ = [
     "ReadingScore",
     "StaticFit",
     "SteeringModel",
+    "TooFewArriveError",
     "TravelTimeModel",
     "baseline_models",
     "covers",

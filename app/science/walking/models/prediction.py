@@ -35,6 +35,10 @@ def slowest_s(length_m: float) -> float:
     return EXTRA_S + SLOWEST_S_PER_M * length_m
 
 
+class TooFewArriveError(WalkingError):
+    """A model's agents do not arrive on a path, so that it predicts no walk there."""
+
+
 @dataclass(frozen=True, eq=False)
 class Prediction:
     """Walks that a model predicts on a path.
@@ -75,7 +79,7 @@ class Predictor:
         """Draw `count` walks along a path; models that do not draw give one.
 
         Raises:
-            WalkingError: too few agents have arrived after `ROUNDS` rounds.
+            TooFewArriveError: too few agents have arrived after `ROUNDS` rounds.
         """
         found = (
             self._drawn(path, dependencies, count, rng)
@@ -83,7 +87,7 @@ class Predictor:
             else self._best(path, dependencies, rng)
         )
         if len(found.durations_s) < (count if self.model.draws else 1):
-            raise WalkingError(
+            raise TooFewArriveError(
                 f"Only {len(found.durations_s)} of {len(found.durations_s) + found.lost} agents of"
                 f" model {self.model.name} arrive on a path of {path.length_m:.2f} m: it is too"
                 " winding, or too far from the walks that the model was fitted on."

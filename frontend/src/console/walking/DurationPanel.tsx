@@ -51,6 +51,7 @@ export function DurationPanel({ prediction, busy }: DurationPanelProps): JSX.Ele
         </div>
       </div>
       <ExtrapolationNotice prediction={prediction} />
+      <NoWalkNotice prediction={prediction} />
       <SegmentedControl
         mt="xs"
         size="xs"
@@ -105,6 +106,15 @@ function ExtrapolationNotice({
     .map((name) => dependency(name, prediction.dependencies[name] ?? 0))
     .join(", ");
   return <Notice tone="warn">{t("walking.outside", { what })}</Notice>;
+}
+
+/** The paper's models that found no walk on this path: mixed predicts without them. */
+function NoWalkNotice({ prediction }: { readonly prediction: Prediction }): JSX.Element | null {
+  const { t, language } = useTexts();
+  const without = (["stat", "adapt"] as const).filter((name) => prediction[name] === null);
+  if (without.length === 0) return null;
+  const models = new Intl.ListFormat(language, { type: "conjunction" }).format(without);
+  return <Notice tone="warn">{t("walking.noWalk", { count: without.length, models })}</Notice>;
 }
 
 function useDurationWords(model: Prediction["model"]): DurationWords {

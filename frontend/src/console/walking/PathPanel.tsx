@@ -5,7 +5,7 @@ import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import type { Dispatch, JSX } from "react";
 import { useTexts } from "../i18n";
-import type { DrawnPath, PathChange } from "./drawnPath";
+import { type DrawnPath, hasEndsOf, type PathChange } from "./drawnPath";
 import { SceneDrawing } from "./SceneDrawing";
 import classes from "./Walking.module.css";
 import { Synthetic } from "./WalkingTable";
@@ -20,8 +20,13 @@ interface PathPanelProps {
 }
 
 export function PathPanel(props: PathPanelProps): JSX.Element {
-  const { scene, path, planned, prediction, onPlanned, onChange } = props;
+  const { scene, path, planned, onPlanned, onChange } = props;
   const { t, language } = useTexts();
+  // While the next path is computed, the answer is still that of the last one.
+  const prediction =
+    props.prediction !== undefined && hasEndsOf(props.prediction.points_m, path.points)
+      ? props.prediction
+      : undefined;
   const seenAt = (prediction?.quantiles_s.p50 ?? 0) / 2;
   const synthetic = prediction?.kinds.includes("synthetic") ?? false;
   return (
@@ -58,13 +63,14 @@ export function PathPanel(props: PathPanelProps): JSX.Element {
       <SceneDrawing
         scene={scene}
         points={path.points}
-        plannedPath={path.points.length > 1 ? (prediction?.points_m ?? null) : null}
-        walkers={path.points.length > 1 ? (prediction?.walkers ?? []) : []}
+        planned={planned}
+        plannedPath={prediction?.points_m ?? null}
+        walkers={prediction?.walkers ?? []}
         synthetic={synthetic}
         atS={seenAt}
         onChange={onChange}
       />
-      {prediction !== undefined && path.points.length > 1 && (
+      {prediction !== undefined && (
         <p className={classes.soft}>
           {t("walking.seen", {
             count: prediction.walkers.length,

@@ -19,6 +19,8 @@ import classes from "./Walking.module.css";
 interface SceneDrawingProps {
   readonly scene: Scene;
   readonly points: readonly Point[];
+  /** Whether the path is planned: then a line between the points is none. */
+  readonly planned: boolean;
   readonly plannedPath: readonly Point[] | null;
   readonly walkers: Prediction["walkers"];
   readonly synthetic: boolean;
@@ -41,7 +43,7 @@ const KEYS: Readonly<Record<string, Point>> = {
 };
 
 export function SceneDrawing(props: SceneDrawingProps): JSX.Element {
-  const { scene, points, plannedPath, walkers, synthetic, atS, onChange } = props;
+  const { scene, points, planned, plannedPath, walkers, synthetic, atS, onChange } = props;
   const { t } = useTexts();
   const plan = useMemo(() => planOf(scene.bounds_m), [scene]);
   const root = useRef<SVGSVGElement>(null);
@@ -83,7 +85,7 @@ export function SceneDrawing(props: SceneDrawingProps): JSX.Element {
         ))}
         <polyline
           className={classes.plannedPath}
-          points={lineOf(plan, drag === null && plannedPath !== null ? plannedPath : shown)}
+          points={lineOf(plan, (drag === null ? plannedPath : null) ?? (planned ? [] : shown))}
         />
         {walkers.map(({ xy_m, step_s, duration_s, vector }) => {
           const [x, y] = xy_m[Math.min(xy_m.length - 1, Math.round(atS / step_s))] ?? [0, 0];

@@ -52,6 +52,13 @@ const same = (a: readonly Point[], b: readonly Point[]): boolean =>
 const isSame = (a: Point, b: Point | undefined): boolean =>
   b !== undefined && a[0] === b[0] && a[1] === b[1];
 
+/** Whether two lines of points begin at the same point and end at the same one, to the centimetre. */
+export function hasEndsOf(line: readonly Point[], points: readonly Point[]): boolean {
+  const ends = (all: readonly Point[]) =>
+    [all.at(0), all.at(-1)].flatMap((end) => (end ? [rounded(end)] : []));
+  return points.length > 1 && line.length > 1 && same(ends(line), ends(points));
+}
+
 /** Whether the path can be queried: at least two points, no two consecutive ones the same. */
 export const isCompletePath = (points: readonly Point[]): boolean =>
   points.length > 1 && points.every((point, at) => !isSame(point, points[at + 1]));

@@ -67,6 +67,10 @@ export const walkingEn = {
     "This model was fitted before travel times were learnt with effects of people: it predicts with prob. Fit it again for mixed.",
   "walking.stat": "stat (the same parameters for every walk)",
   "walking.adapt": "adapt (one per path)",
+  "walking.noWalk_one":
+    "{{models}}, a model of the paper, found no walk on this path: the path winds too much for it, or is too unlike the walks that it was fitted on. The prediction does not need it.",
+  "walking.noWalk_other":
+    "{{models}}, models of the paper, found no walk on this path: the path winds too much for them, or is too unlike the walks that they were fitted on. The prediction does not need them.",
   "walking.drawing": "Drawing the figure",
   "walking.notDrawn": "The figure could not be drawn.",
   "walking.told":
@@ -167,6 +171,10 @@ export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
     "Dieses Modell wurde angepasst, bevor Gehzeiten mit Personeneffekten gelernt wurden: Es sagt mit prob vorher. Passen Sie es für mixed neu an.",
   "walking.stat": "stat (dieselben Parameter für jeden Gang)",
   "walking.adapt": "adapt (eines je Weg)",
+  "walking.noWalk_one":
+    "{{models}}, ein Modell der Veröffentlichung, fand keinen Gang auf diesem Weg: Er ist ihm zu gewunden oder den Gängen zu unähnlich, an die es angepasst wurde. Die Vorhersage kommt ohne es aus.",
+  "walking.noWalk_other":
+    "{{models}}, Modelle der Veröffentlichung, fanden keinen Gang auf diesem Weg: Er ist ihnen zu gewunden oder den Gängen zu unähnlich, an die sie angepasst wurden. Die Vorhersage kommt ohne sie aus.",
   "walking.drawing": "Die Abbildung wird gezeichnet",
   "walking.notDrawn": "Die Abbildung konnte nicht gezeichnet werden.",
   "walking.told":

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { changedPath, isCompletePath, NO_PATH } from "./drawnPath";
+import { changedPath, hasEndsOf, isCompletePath, NO_PATH } from "./drawnPath";
 import { furtherOf, isNumberName, numberLabel } from "./furtherNumbers";
 import { planOf, ticks, WIDTH } from "./plan";
 import { inModelsScene, OPEN_FLOOR } from "./walkedScenes";
@@ -113,5 +113,28 @@ describe("the scenes of a model's walks", () => {
       { key: "hall", title: "Hall", walks: 8 },
       { key: OPEN_FLOOR, title: OPEN_FLOOR, walks: 2 },
     ]);
+  });
+});
+
+describe("the ends of a path", () => {
+  it("tell whether an answer is about the points that are drawn", () => {
+    const line = [
+      [0.004, 0],
+      [1, 1],
+      [2, 0],
+    ] as const;
+    expect(
+      hasEndsOf(line, [
+        [0, 0],
+        [2, 0],
+      ]),
+    ).toBe(true);
+    expect(
+      hasEndsOf(line, [
+        [0, 0],
+        [2, 1],
+      ]),
+    ).toBe(false);
+    expect(hasEndsOf(line, [])).toBe(false);
   });
 });

@@ -58,8 +58,8 @@ export function durationFigure(
       band(words.half, q.p25, q.p75, BAND),
       drawn,
       mark(words.median, q.p50, "solid", PROB),
-      mark(words.stat, prediction.stat.duration_s, "dot", STAT),
-      mark(words.adapt, prediction.adapt.duration_s, "dash", ADAPT),
+      ...fixed(prediction.stat, ({ duration_s }) => mark(words.stat, duration_s, "dot", STAT)),
+      ...fixed(prediction.adapt, ({ duration_s }) => mark(words.adapt, duration_s, "dash", ADAPT)),
     ],
     layout: {
       height: 340,
@@ -72,6 +72,14 @@ export function durationFigure(
       },
     },
   };
+}
+
+/** What is drawn of a model with one answer; nothing if it found no walk. */
+function fixed<Trace>(
+  found: Prediction["stat"],
+  trace: (found: NonNullable<Prediction["stat"]>) => Trace,
+): readonly Trace[] {
+  return found === null ? [] : [trace(found)];
 }
 
 function ecdf(durations: readonly number[], words: DurationWords) {
@@ -162,8 +170,8 @@ export function sliceFigure(slice: Slice, prediction: Prediction, words: SliceWo
         prediction.walkers.map(({ vector }) => vector),
         "circle",
       ),
-      mark(words.stat, [prediction.stat.vector], "square"),
-      mark(words.adapt, [prediction.adapt.vector], "diamond"),
+      ...fixed(prediction.stat, ({ vector }) => mark(words.stat, [vector], "square")),
+      ...fixed(prediction.adapt, ({ vector }) => mark(words.adapt, [vector], "diamond")),
     ],
     layout: {
       height: 360,

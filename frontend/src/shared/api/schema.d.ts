@@ -9885,10 +9885,10 @@ export interface components {
          *     `assumed`: dependencies that were not given. `outside`: those beyond the walks that the model
          *     was fitted to, where it extrapolates. `lost`: draws that did not arrive and were drawn again.
          *     `durations_s` are sorted. `kinds`: includes synthetic if the model's people include synthetic
-         *     ones.
+         *     ones. `stat`, `adapt`: null if no agent of this model arrives on the path.
          */
         readonly PredictionView: {
-            readonly adapt: components["schemas"]["FixedView"];
+            readonly adapt: components["schemas"]["FixedView"] | null;
             /** Assumed */
             readonly assumed: readonly string[];
             /** Count */
@@ -9917,7 +9917,7 @@ export interface components {
             readonly quantiles_s: components["schemas"]["Quantiles"];
             /** Seed */
             readonly seed: number;
-            readonly stat: components["schemas"]["FixedView"];
+            readonly stat: components["schemas"]["FixedView"] | null;
             /** Walkers */
             readonly walkers: readonly components["schemas"]["SampledWalk"][];
         };

@@ -196,3 +196,19 @@ def test_a_fit_is_stopped_and_resumed(walking_lab: Lab) -> None:
     ok(walking_lab.operator.post(f"{path}/resume"))
     assert settled(walking_lab, started["id"])["state"] == "ready"
     error(walking_lab.operator.post(f"{path}/resume"), 409, "not_now")
+
+
+@pytest.mark.one_engine
+def test_a_model_of_the_paper_without_a_walk_leaves_the_prediction_there(walking_lab: Lab) -> None:
+    """Where an agent of stat does not arrive, mixed still predicts, and the path is told as unlike.
+
+    The walks that the model learns from are straight, and the path leads round a corner.
+    """
+    walks = ok(upload_tracks(walking_lab, table()))
+    model = fitted(walking_lab, walks["id"])
+    path = f"/api/walking/models/{model['id']}/prediction"
+    query = {"points_m": [[0, 0], [0, 1.5], [1, 0.8]], "count": 20, "shown": 2}
+    found = ok(walking_lab.operator.post(path, json=query))
+    assert found["stat"] is None
+    assert (found["model"], len(found["durations_s"])) == ("mixed", 20)
+    assert "turning_per_m" in found["outside"]

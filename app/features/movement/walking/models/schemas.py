@@ -281,7 +281,7 @@ class PredictionView(BaseModel):
     `assumed`: dependencies that were not given. `outside`: those beyond the walks that the model
     was fitted to, where it extrapolates. `lost`: draws that did not arrive and were drawn again.
     `durations_s` are sorted. `kinds`: includes synthetic if the model's people include synthetic
-    ones.
+    ones. `stat`, `adapt`: null if no agent of this model arrives on the path.
     """
 
     points_m: list[Point]
@@ -296,8 +296,8 @@ class PredictionView(BaseModel):
     count: int
     seed: int
     kinds: list[Kind]
-    stat: FixedView
-    adapt: FixedView
+    stat: FixedView | None
+    adapt: FixedView | None
     walkers: list[SampledWalk]
 
 
