@@ -12,7 +12,7 @@ pedestrian dynamics data archive of Juelich. If time is a frame number, the rate
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -92,8 +92,9 @@ class TrackTable:
     """The tracks of a table.
 
     Attributes:
-        tracks: one for each person, or several where the scene changes.
-        assumed: what had to be assumed because neither the table nor the user said it.
+        tracks: one for each person, or several where the scene changes or rows are missing.
+        assumed: what had to be assumed because neither the table nor the user said it, and where
+            tracks were cut because of gaps.
         scenes: the line at which each scene is first named.
         numbers: the names of the further numbers that it has.
         spoilt: what is wrong with columns that could have been further numbers.
@@ -116,7 +117,9 @@ def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) ->
 def read_track_table(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) -> TrackTable:
     """Read the tracks of all people of a table, in the order in which they appear.
 
-    A change of scene within the rows of a person begins another track.
+    A change of scene within the rows of a person begins another track, and so does a gap of more
+    than `LONGEST_GAP_S` and three times the usual time between rows: that is how repeated trials
+    are recorded, and a person may turn in it.
 
     Args:
         data: the content of the file.
@@ -135,7 +138,7 @@ def read_track_table(data: bytes, *, name: str, reading: TrackReading = _AS_IT_I
     for at in range(layout.rows_from, len(lines)):
         if lines[at].strip() and not lines[at].lstrip().startswith("#"):
             person, scene, sample = _sample(lines[at], at + 1, layout)
-            people.setdefault(person, []).append(sample)
+            people.setdefault(person, []).append((*sample, at + 1))
             if layout.about.scene >= 0:
                 scenes.setdefault(person, []).append(scene)
             if len(people) > MOST_PEOPLE or at > MOST_ROWS:
@@ -144,15 +147,17 @@ def read_track_table(data: bytes, *, name: str, reading: TrackReading = _AS_IT_I
                 )
     if not people:
         raise CaptureError("the table has no rows.")
-    tracks = [
-        _track(person, scene, piece, name, reading, layout)
-        for person, rows in people.items()
-        for scene, piece in pieces(scenes.get(person, []), np.array(rows), person)
-    ]
+    tracks: list[Track] = []
+    gaps: list[tuple[str, float, float]] = []
+    for person, rows in people.items():
+        for where, piece in pieces(scenes.get(person, []), np.array(rows), person):
+            own, missing = _tracks(person, where, piece, name, reading, layout)
+            tracks += own
+            gaps += [(person, *gap) for gap in missing]
     about = layout.about
     return TrackTable(
         tracks,
-        layout.assumed,
+        (*layout.assumed, *([_cut_at(gaps)] if gaps else [])),
         about.scenes,
         tuple(about.usable),
         tuple(about.spoilt),
@@ -275,46 +280,83 @@ def _sample(line: str, number: int, layout: _Layout) -> tuple[str, str, tuple[fl
     return person, scene, (time_s, *place, *others)
 
 
-def _track(
+def _tracks(
     person: str,
     scene: str | None,
     rows: FloatArray,
     name: str,
     reading: TrackReading,
     layout: _Layout,
-) -> Track:
-    times_s, xy_m = rows[:, 0] - rows[0, 0], rows[:, 1:3]
-    try:
-        track = Track(
-            times_s,
-            xy_m,
-            person,
-            name,
-            reading.kind,
-            reading.statures_m.get(person),
-            scene,
-            numbers_of(layout.about, rows[:, 3:]),
-        )
-    except WalkingError as error:
-        raise CaptureError(str(error)) from error
-    waits_s = np.diff(times_s)
-    if (usual_s := float(np.median(waits_s))) > LONGEST_STEP_S:
-        raise CaptureError(
-            f"the samples of person {person!r} are {usual_s:.3g} s apart as a rule, by the column"
-            f" {layout.time_name}; people take two steps a second. If these are milliseconds, name"
-            " the column time_ms; if they are numbers of frames, name it frame and give the rate."
-        )
-    longest = int(np.argmax(waits_s))
-    if waits_s[longest] > max(LONGEST_GAP_S, 3.0 * float(np.median(waits_s))):
-        raise CaptureError(
-            f"person {person!r} was not seen for {waits_s[longest]:.2f} s from"
-            f" {rows[longest, 0]:.2f} s on: give each part an id of its own."
-        )
+) -> tuple[list[Track], list[tuple[float, float]]]:
+    """Return the tracks of one person in one scene, and begin and length of the gaps between them.
+
+    Rows (N, c) are the time, the place, the further numbers and the line.
+    """
+    _check_times(person, rows, layout)
     with np.errstate(over="ignore"):
-        speed = float(np.median(np.linalg.norm(np.diff(xy_m, axis=0), axis=1) / waits_s))
+        waits_s = np.diff(rows[:, 0])
+        steps_m = np.linalg.norm(np.diff(rows[:, 1:3], axis=0), axis=1)
+        speed = float(np.median(steps_m / waits_s)) if len(rows) > 1 else 0.0
     if speed > FASTEST_M_S:
         raise CaptureError(
             f"person {person!r} moves at {speed:.0f} m/s as a rule: positions are not in metres, or"
             " the rate is not right. Say the unit, or the rate."
         )
-    return track
+    usual_s = float(np.median(waits_s)) if len(rows) > 1 else 0.0
+    gaps = np.flatnonzero(waits_s > max(LONGEST_GAP_S, 3.0 * usual_s))
+    found = []
+    for part in np.split(rows, gaps + 1):
+        if len(gaps) and len(part) == 1:
+            # Between two gaps, one sample is no movement.
+            continue
+        try:
+            track = Track(
+                part[:, 0] - part[0, 0],
+                part[:, 1:3],
+                person,
+                name,
+                reading.kind,
+                reading.statures_m.get(person),
+                scene,
+                numbers_of(layout.about, part[:, 3:-1]),
+            )
+        except WalkingError as error:
+            raise CaptureError(str(error)) from error
+        found.append(track)
+    return found, [(float(rows[at, 0]), float(waits_s[at])) for at in gaps]
+
+
+def _check_times(person: str, rows: FloatArray, layout: _Layout) -> None:
+    """Raise CaptureError unless times increase, a few in each second."""
+    times_s = rows[:, 0]
+    with np.errstate(over="ignore"):
+        waits_s = np.diff(times_s)
+    late = np.flatnonzero(waits_s <= 0.0)
+    if len(late):
+        before_s, after_s = times_s[late[0]], times_s[late[0] + 1]
+        raise CaptureError(
+            f"the time of person {person!r} goes from {before_s:.10g} s to {after_s:.10g} s; it has"
+            " to increase from row to row. Sort the rows by time. If another recording of this person"
+            " begins here, let its times go on after those before, or give it a file of its own.",
+            line=int(rows[late[0] + 1, -1]),
+        )
+    if len(waits_s) and (usual_s := float(np.median(waits_s))) > LONGEST_STEP_S:
+        raise CaptureError(
+            f"the samples of person {person!r} are {usual_s:.3g} s apart as a rule, by the column"
+            f" {layout.time_name}; people take two steps a second. If these are milliseconds, name"
+            " the column time_ms; if they are numbers of frames, name it frame and give the rate."
+        )
+
+
+def _cut_at(gaps: Sequence[tuple[str, float, float]]) -> str:
+    """Say where tracks were cut: person, begin and length of each gap."""
+    person, from_s, long_s = gaps[0]
+    first = f"person {person!r} was not seen for {long_s:.2f} s from {from_s:.2f} s on"
+    if len(gaps) == 1:
+        return f"{first}: cut there, as where a recording ends and another begins"
+    people = len({name for name, _, _ in gaps})
+    whom = "" if people == 1 else f" of {people} people"
+    return (
+        f"there are {len(gaps)} gaps{whom}, such as the first: {first}. Tracks are cut there, as"
+        " where a recording ends and another begins"
+    )

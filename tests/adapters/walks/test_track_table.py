@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.adapters.captures.capture import CaptureError
-from app.adapters.walks.track_table import TrackReading, read_tracks
+from app.adapters.walks.track_table import TrackReading, read_track_table, read_tracks
 from app.science.walking.recording import walks_of
 
 SIMPLE = "t,x,y\n0,0,0\n0.5,0.1,0.2\n1,0.3,0.5\n"
@@ -59,9 +59,9 @@ def test_people_are_kept_apart() -> None:
         ("x,y\n0,0\n", "no column of time"),
         ("frame,x,y\n0,0,0\n1,0,1\n", "give the rate"),
         ("t,x,y\n0,0,0\n", r"1 point\(s\); a walk needs at least two"),
-        ("t,x,y\n0,0,0\n0,0,1\n", "do not increase, at index 1"),
+        ("t,x,y\n0,0,0\n\n0,0,1\n", "line 4: the time of person '1' goes from 0 s to 0 s"),
+        ("t,x,y\n0,0,0\n0,0,1\n", "Sort the rows by time"),
         ("t,x,y\n0,0,0\n1,0,30\n2,0,60\n", "moves at 30 m/s"),
-        ("t,x,y\n0,0,0\n1,0,1\n2,0,2\n9,0,3\n", r"not seen for 7\.00 s from 2\.00 s"),
         ("t,x,y\n", "no rows"),
         ("", "empty"),
         ("1 2 3\n", "3 columns without a header"),
@@ -71,6 +71,31 @@ def test_invalid_tables_are_rejected_with_their_line(text: str, expected_message
     """An invalid row raises an error that names its line; it is not guessed or skipped."""
     with pytest.raises(CaptureError, match=expected_message):
         read_tracks(text.encode(), name="a.csv")
+
+
+def test_a_gap_cuts_a_track_and_keeps_the_person() -> None:
+    """A person who was not seen for long has another track from there on, and that is told."""
+    text = "t,x,y\n0,0,0\n1,0,1\n2,0,2\n9,0,3\n10,0,4\n20,0,9\n"
+    table = read_track_table(text.encode(), name="a.csv")
+    assert [(one.subject, one.times_s.tolist()) for one in table.tracks] == [
+        ("1", [0.0, 1.0, 2.0]),
+        ("1", [0.0, 1.0]),
+    ]
+    said = table.assumed[-1]
+    assert "2 gaps, such as the first: person '1' was not seen for 7.00 s from 2.00 s on" in said
+    whole = read_track_table(b"t,x,y\n0,0,0\n1,0,1\n2,0,2\n", name="a.csv")
+    assert not any("gap" in one for one in whole.assumed)
+
+
+def test_a_gap_within_a_movement_makes_two_walks_that_the_recording_cuts() -> None:
+    """A walk with a gap in it is two, one without its end and one without its beginning."""
+    times_s = np.arange(0.0, 8.0, 0.1)
+    y_m = np.clip(times_s - 2.0, 0.0, 4.0)
+    rows = [f"A,{t:.1f},0,{y:.3f}" for t, y in zip(times_s, y_m, strict=True) if not 3.5 < t < 4.5]
+    tracks = read_tracks("\n".join(["id,t,x,y", *rows]).encode(), name="a.csv")
+    walks = [walk for track in tracks for walk in walks_of(track)]
+    assert [(one.begins_still, one.ends_still) for one in walks] == [(True, False), (False, True)]
+    assert {one.subject for one in walks} == {"A"}
 
 
 def test_an_impossible_stature_is_rejected() -> None:
