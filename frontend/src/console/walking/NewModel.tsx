@@ -1,6 +1,7 @@
 /** Start to fit a model: on which walks, in which scene, and with which settings. */
 import { Button, Group, Modal, MultiSelect, Select, Stack } from "@mantine/core";
 import { type WalkSet, type NewModel as Wish, walking } from "@shared/api/walking";
+import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
@@ -9,6 +10,7 @@ import { useFormSubmit } from "../ui/useSingleSubmit";
 import { NameField, SceneField, WholeNumbers } from "./FormFields";
 import { numberLabel } from "./furtherNumbers";
 import { modelsQuery } from "./queries";
+import classes from "./Walking.module.css";
 
 interface NewModelProps {
   readonly opened: boolean;
@@ -136,9 +138,9 @@ interface DependsOnProps {
 /** Choose the further numbers on which the model depends; nothing if the walks have none. */
 function DependsOn({ set, names, onChange }: DependsOnProps): JSX.Element | null {
   const { t } = useTexts();
-  const { numbers, walks } = set.summary;
+  const { numbers, walks, spoilt_numbers: spoilt } = set.summary;
   const known = Object.entries(numbers ?? {});
-  if (known.length === 0) return null;
+  if (known.length === 0) return <SpoiltNumbers told={spoilt ?? []} />;
   const data = known.map(([name, one]) => {
     const label = numberLabel(name);
     if (2 * one.walks < walks) {
@@ -151,15 +153,33 @@ function DependsOn({ set, names, onChange }: DependsOnProps): JSX.Element | null
     return { value: name, label };
   });
   return (
-    <MultiSelect
-      label={t("walking.numbers.dependsOn")}
-      description={t("walking.numbers.dependsOn.hint")}
-      placeholder={names.length === 0 ? t("walking.numbers.dependsOn.none") : ""}
-      data={data}
-      value={[...names]}
-      onChange={onChange}
-      maxValues={MOST_DEPENDENCIES}
-      clearable
-    />
+    <>
+      <MultiSelect
+        label={t("walking.numbers.dependsOn")}
+        description={t("walking.numbers.dependsOn.hint")}
+        placeholder={names.length === 0 ? t("walking.numbers.dependsOn.none") : ""}
+        data={data}
+        value={[...names]}
+        onChange={onChange}
+        maxValues={MOST_DEPENDENCIES}
+        clearable
+      />
+      <SpoiltNumbers told={spoilt ?? []} />
+    </>
+  );
+}
+
+/** The columns of a table that cannot be chosen, because not all of their cells are numbers. */
+function SpoiltNumbers({ told }: { readonly told: readonly string[] }): JSX.Element | null {
+  const { t } = useTexts();
+  if (told.length === 0) return null;
+  return (
+    <Notice tone="warn" title={t("walking.numbers.notOffered")}>
+      {told.map((text) => (
+        <p key={text} className={classes.soft}>
+          {t("walking.numbers.spoilt", { text })}
+        </p>
+      ))}
+    </Notice>
   );
 }

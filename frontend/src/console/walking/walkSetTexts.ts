@@ -12,7 +12,7 @@ export const walkSetEn = {
   "walking.model.file": "Model file",
   "walking.model.scene": "Planned in",
   "walking.model.scene.hint":
-    "Where those walks took place that name no scene; paths are planned around its obstacles.",
+    "The scene of all walks for which the table names none. Paths are planned around its obstacles.",
   "walking.model.scene.open": "the open floor",
   "walking.model.scene.own": "the scenes they were made for",
   "walking.scene.ofModel": "the model’s",
@@ -24,6 +24,7 @@ export const walkSetEn = {
   "walking.numbers.same": "{{name}}, the same for all walks",
   "walking.numbers.changing": "Changes during every walk, so no model can depend on it: {{names}}.",
   "walking.numbers.spoilt": "{{text}}. Correct it and add the walks again to use the column.",
+  "walking.numbers.notOffered": "Not offered, since not every cell is a number",
   "walking.numbers.dependsOn": "Depends on",
   "walking.numbers.dependsOn.hint":
     "Besides length, turning and stature; up to three. Walks without the number are left out.",
@@ -40,7 +41,7 @@ export const walkSetEn = {
   "walking.sets.none": "No walks yet",
   "walking.sets.none.body":
     "Add a table of tracks, captures of people walking, or synthetic walkers.",
-  "walking.set.assumed": "Assumed: {{text}}.",
+  "walking.set.assumed": "How it was read: {{text}}.",
   "walking.set.doubt":
     "{{text}}. Check the unit of x and y, and the rate; then add the walks again.",
   "walking.sets.new": "New walks",
@@ -81,6 +82,12 @@ export const walkSetEn = {
     "Suitability is one minus the deviation as a share of the largest deviation.",
   "walking.reading.time-aware.hint":
     "As in the paper, but the further the arrival time is from the person's, the lower the suitability.",
+  "walking.advanced": "Advanced",
+  "walking.option.steps.hint": "More make the maps finer, and the fit slower: by their cube.",
+  "walking.option.k.hint": "How many similar walks a prediction blends.",
+  "walking.option.entries.hint":
+    "Recorded walks and blends of them, among which similar ones are sought.",
+  "walking.option.seed.hint": "The same seed gives the same model.",
   "walking.option.steps": "Values of each parameter",
   "walking.option.k": "Neighbours",
   "walking.option.entries": "Entries after blending",
@@ -106,7 +113,7 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
   "walking.model.file": "Modelldatei",
   "walking.model.scene": "Geplant in",
   "walking.model.scene.hint":
-    "Wo die Gänge stattfanden, die keine Szene nennen; Wege werden um ihre Hindernisse herum geplant.",
+    "Die Szene aller Gänge, für die die Tabelle keine nennt. Wege werden um ihre Hindernisse herum geplant.",
   "walking.model.scene.open": "der freien Fläche",
   "walking.model.scene.own": "den Szenen, für die sie gemacht wurden",
   "walking.scene.ofModel": "die des Modells",
@@ -120,6 +127,7 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
     "Ändert sich in jedem Gang, daher kann kein Modell davon abhängen: {{names}}.",
   "walking.numbers.spoilt":
     "{{text}}. Berichtigen Sie das und fügen Sie die Gänge neu hinzu, um die Spalte zu nutzen.",
+  "walking.numbers.notOffered": "Nicht angeboten, weil nicht jede Zelle eine Zahl ist",
   "walking.numbers.dependsOn": "Hängt ab von",
   "walking.numbers.dependsOn.hint":
     "Außer von Länge, Drehung und Körpergröße; bis zu drei. Gänge ohne die Zahl werden ausgelassen.",
@@ -136,7 +144,7 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
   "walking.sets.none": "Noch keine Gänge",
   "walking.sets.none.body":
     "Fügen Sie eine Tabelle mit Spuren, Aufnahmen gehender Personen oder synthetische Geher hinzu.",
-  "walking.set.assumed": "Angenommen: {{text}}.",
+  "walking.set.assumed": "So wurde sie gelesen: {{text}}.",
   "walking.set.doubt":
     "{{text}}. Prüfen Sie die Einheit von x und y und die Rate, und fügen Sie die Gänge neu hinzu.",
   "walking.sets.new": "Neue Gänge",
@@ -177,6 +185,13 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
     "Eignung ist eins minus die Abweichung als Anteil der größten Abweichung.",
   "walking.reading.time-aware.hint":
     "Wie in der Veröffentlichung, aber je weiter die Ankunftszeit von der der Person abweicht, desto geringer die Eignung.",
+  "walking.advanced": "Weitere Einstellungen",
+  "walking.option.steps.hint":
+    "Mehr machen die Karten feiner, die Anpassung aber langsamer: mit der dritten Potenz.",
+  "walking.option.k.hint": "Wie viele ähnliche Gänge eine Vorhersage mischt.",
+  "walking.option.entries.hint":
+    "Aufgezeichnete Gänge und Mischungen daraus, unter denen ähnliche gesucht werden.",
+  "walking.option.seed.hint": "Derselbe Startwert gibt dasselbe Modell.",
   "walking.option.steps": "Werte jeder Steuergröße",
   "walking.option.k": "Nachbarn",
   "walking.option.entries": "Einträge nach dem Mischen",
