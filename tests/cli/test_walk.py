@@ -143,7 +143,12 @@ def test_a_path_outside_what_the_model_has_seen_is_named(lab: Path) -> None:
     assert "this is a guess" in text
     assert "outside" not in _run(*asked, 2).stdout
     rows = [line.split("  ")[1] for line in text.splitlines()[3:7]]
-    assert rows == ["duration, s", "velocity, m/s", "acceleration, m/s^2", "angular, 1/m"]
+    assert rows == [
+        "duration, s",
+        "maximum speed, m/s",
+        "acceleration, m/s^2",
+        "largest curvature, 1/m",
+    ]
 
 
 def test_people_of_whom_nobody_walks_are_refused(lab: Path, tmp_path: Path) -> None:
@@ -341,3 +346,28 @@ def test_a_walk_that_cannot_be_evaluated_is_left_out_by_name(lab: Path, tmp_path
     assert "inside obstacle 'table'" in left_out["reason"]
     told = _run("evaluate", lab / "model.npz", inside, beside, *people, *scene).stdout
     assert "left out      1 walk: inside.csv, 3, walk 1: " in told
+
+
+def test_what_a_program_walked_is_marked_wherever_it_is_predicted(tmp_path: Path) -> None:
+    """With --synthetic the file says so, and so does each prediction from it, in both forms."""
+    files, model = _write_walks(tmp_path, range(2)), tmp_path / "model.npz"
+    for option, synthetic in (("--synthetic", True), (None, False)):
+        asked = [option] if option else []
+        found = _figures("fit", *files, "--out", model, *QUICK, *asked)
+        assert found["kinds"] == ["synthetic" if synthetic else "human"]
+        sample = ("sample", model, "--length", 2, "--count", 5)
+        drawn = _figures(*sample)
+        assert (drawn["synthetic"], drawn["kinds"]) == (synthetic, found["kinds"])
+        assert ("SYNTHETIC" in _run(*sample).stdout) == synthetic
+
+
+def test_everything_that_a_prediction_needs_is_asked_for_at_once(tmp_path: Path) -> None:
+    """Stature and further numbers that are missing are told in one message, with their ranges."""
+    files = _write_walks(tmp_path, range(2))
+    rows = ["0,1.70,1", "1,1.80,2"]
+    (tmp_path / "people.csv").write_text("\n".join(["subject,stature_m,load_kg", *rows]))
+    listed = ("--people", tmp_path / "people.csv", "--depends-on", "load_kg")
+    _figures("fit", *files, *listed, "--out", tmp_path / "model.npz", *QUICK)
+    told = _refusal("sample", tmp_path / "model.npz", "--length", 2)
+    assert "depends on stature and load_kg: give --stature METRES (1.70 to 1.80 in its" in told
+    assert "--with load_kg=NUMBER (1.00 to 2.00 in its walks)" in told

@@ -47,6 +47,9 @@ _Rate = Annotated[
     float | None, typer.Option(help="Frames a second, where a table's time is a frame number.")
 ]
 _Unit = Annotated[str | None, typer.Option(help="Unit of x and y in tables: m, cm, mm or ft.")]
+_Synthetic = Annotated[
+    bool, typer.Option("--synthetic", help="A program made these walks, nobody walked them.")
+]
 _Seed = Annotated[int, typer.Option(help="Seed of all random draws.", min=0)]
 
 
@@ -59,6 +62,7 @@ def fit(
     depends_on: _DependsOn = None,
     rate_hz: _Rate = None,
     unit: _Unit = None,
+    synthetic: _Synthetic = False,
     seed: _Seed = 1,
     k: Annotated[int, typer.Option(help="Neighbours used for a prediction.", min=1)] = 100,
     entries: Annotated[
@@ -73,7 +77,7 @@ def fit(
     from app.cli.walk import output as texts
     from app.cli.walk.run import FitOrder, WalksOrder, carry_out_fit
 
-    recorded = WalksOrder(tuple(walks), scene, people, rate_hz, unit)
+    recorded = WalksOrder(tuple(walks), scene, people, rate_hz, unit, synthetic)
     order = FitOrder(recorded, out, seed, k, entries, reading, tuple(depends_on or ()))
     with reported(ValueError, OSError), Activity("reading the walks") as activity:
         done = carry_out_fit(order, activity.now)

@@ -24,7 +24,14 @@ from app.science.walking.recording import (
     track_of_motion,
     walks_of,
 )
-from app.science.walking.records import OPEN_FLOOR, PlannedWalk, Track, WalkingError, known_for
+from app.science.walking.records import (
+    OPEN_FLOOR,
+    Kind,
+    PlannedWalk,
+    Track,
+    WalkingError,
+    known_for,
+)
 
 MOST_BYTES = 500_000_000
 _PERSON_COLUMNS = {"id", "subject", "person", "participant", "ped", "pers_id", "agent"}
@@ -38,19 +45,22 @@ class Tables:
     Attributes:
         rate_hz: frames a second, for tables whose time is a frame number.
         metres_per_unit: the unit of x and y; None to take it from the columns' names.
+        kind: whether people or a program walked; so it is with captures, too.
     """
 
     rate_hz: float | None = None
     metres_per_unit: float | None = None
+    kind: Kind = "human"
 
 
-def tables_of(rate_hz: float | None, unit: str | None) -> Tables:
+def tables_of(rate_hz: float | None, unit: str | None, *, synthetic: bool = False) -> Tables:
     """Return how to read tables; raise ValueError for a rate or a unit that is not valid."""
     if rate_hz is not None and not 1.0 <= rate_hz <= 10_000.0:
         raise ValueError(f"--rate-hz {rate_hz:g}: 1 to 10000 frames a second are valid")
     if unit is not None and unit not in UNITS_M:
         raise ValueError(f"--unit {unit!r}: {', '.join(UNITS_M)} are valid")
-    return Tables(rate_hz, None if unit is None else UNITS_M[unit])
+    metres_per_unit = None if unit is None else UNITS_M[unit]
+    return Tables(rate_hz, metres_per_unit, "synthetic" if synthetic else "human")
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,7 +284,7 @@ def _tracks(
         if all(header & names for names in _TRACK_COLUMNS) or path.suffix.lower() == ".txt":
             return _table(path, label, header, people, tables, numbers)
         subject = people.subject_of(path) or label.removesuffix(path.suffix)
-        walker = Walker(subject, label, people.statures_m.get(subject))
+        walker = Walker(subject, label, people.statures_m.get(subject), tables.kind)
         return TrackTable([track_of_motion(read_capture_file(path).motion, walker)], ())
     except (CaptureError, WalkingError, RigError) as error:
         option = " (--rate-hz)" if "frame rate is not specified" in str(error) else ""
@@ -302,6 +312,7 @@ def _table(
         rate_hz=tables.rate_hz,
         metres_per_unit=tables.metres_per_unit,
         statures_m=people.statures_m,
+        kind=tables.kind,
         numbers=tuple(numbers),
     )
     table = read_track_table(path.read_bytes(), name=label, reading=reading)

@@ -20,6 +20,12 @@ from app.science.walking.models import MIXED, WITHOUT, FittedWalking
 from app.science.walking.records import TURNING
 
 _SHOWN = 6
+_WORDS = {
+    "velocity": "maximum speed",
+    "acceleration": "acceleration",
+    "angular": "largest curvature",
+}
+"""What the parameters are called for people, as the console calls them."""
 
 
 def fit_json(done: Fitted) -> dict[str, object]:
@@ -103,8 +109,8 @@ def fit_text(done: Fitted) -> str:
         for score in fit.scores[:3]
     ]
     parameters = ", ".join(
-        f"{name} {value:.2f}"
-        for name, value in zip(_parameters(fit), fit.static.vector, strict=True)
+        f"{_WORDS.get(one.name, one.name)} {value:.2f} {one.unit}"
+        for one, value in zip(fit.database.grid.parameters, fit.static.vector, strict=True)
     )
     lines += [f"  {'static':<14}{parameters}", "", f"written: {done.order.out}"]
     return "\n".join(lines)
@@ -144,6 +150,8 @@ def sample_json(done: Sampled) -> dict[str, object]:
         "points_m": done.path.points_m.tolist(),
         "dependencies": done.dependencies,
         "model": done.which,
+        "synthetic": done.synthetic,
+        "kinds": sorted(set(done.fit.database.kinds)),
         "seed": done.order.seed,
         "parameters": _parameters(done.fit),
         "vectors": prediction.vectors.tolist(),
@@ -163,17 +171,23 @@ def sample_text(done: Sampled) -> str:
             f"path of {done.path.length_m:.2f} m, {len(done.path.points_m)} points; model"
             f" {done.which}, {count} walk(s), {found.lost} drawn that did not arrive"
         ),
+        *(
+            ["SYNTHETIC: the model was fitted on walks that a program made"]
+            if done.synthetic
+            else []
+        ),
         "",
-        f"  {'':<20}{'5 %':>8}{'25 %':>8}{'median':>8}{'75 %':>8}{'95 %':>8}",
     ]
     columns = [("duration, s", found.durations_s)]
     columns += [
-        (f"{one.name}, {one.unit}" if one.unit else one.name, found.vectors[:, at])
+        (f"{_WORDS.get(one.name, one.name)}, {one.unit}", found.vectors[:, at])
         for at, one in enumerate(parameters)
     ]
+    width = 2 + max(len(name) for name, _ in columns)
+    lines.append(f"  {'':<{width}}{'5 %':>8}{'25 %':>8}{'median':>8}{'75 %':>8}{'95 %':>8}")
     for name, column in columns:
         cells = "".join(f" {value:>7.2f}" for value in np.percentile(column, PERCENTILES))
-        lines.append(f"  {name:<20}{cells}")
+        lines.append(f"  {name:<{width}}{cells}")
     lines += [f"  note: {text}" for text in done.notes]
     return "\n".join(lines)
 
@@ -245,9 +259,9 @@ def evaluation_text(done: Evaluated) -> str:
         interval = (
             ""
             if low_s is None or high_s is None
-            else f", 95 % of people drawn again {low_s:+.3f} to {high_s:+.3f}"
+            else f"; 95 % of people drawn again: {_smaller(low_s)} to {_smaller(high_s)}"
         )
-        lines.append(f"  {MIXED} against {name}: CRPS {gain_s:+.3f} s smaller{interval}")
+        lines.append(f"  {MIXED} against {name}: CRPS {_smaller(gain_s)}{interval}")
         if name.startswith(WITHOUT) and gain_s <= 0.0:
             lines.append(
                 f"  With {name.removeprefix(WITHOUT)} these walks are predicted no better than"
@@ -256,6 +270,11 @@ def evaluation_text(done: Evaluated) -> str:
     if too_few := _too_few(result):
         lines.append(f"  No intervals and no tests: {too_few}")
     return "\n".join(lines)
+
+
+def _smaller(gain_s: float) -> str:
+    """Say by how much an error is smaller, or larger."""
+    return f"{abs(gain_s):.3f} s {'smaller' if gain_s >= 0.0 else 'larger'}"
 
 
 def _counted(count: int, noun: str) -> str:

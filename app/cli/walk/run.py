@@ -64,13 +64,17 @@ MOST_METRES = 1000.0
 
 @dataclass(frozen=True)
 class WalksOrder:
-    """The files of recorded walks, with their people, and the scene of those that name none."""
+    """The files of recorded walks, with their people, and the scene of those that name none.
+
+    `synthetic`: a program made them.
+    """
 
     files: tuple[Path, ...]
     scene: str | None = None
     people: Path | None = None
     rate_hz: float | None = None
     unit: str | None = None
+    synthetic: bool = False
 
 
 @dataclass(frozen=True)
@@ -137,6 +141,11 @@ class Sampled:
     path: PlannedPath
     dependencies: dict[str, float]
     prediction: Prediction
+
+    @property
+    def synthetic(self) -> bool:
+        """Whether a program made any of the walks that the model was fitted to."""
+        return "synthetic" in self.fit.database.kinds
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -218,14 +227,13 @@ def carry_out_sample(order: SampleOrder) -> Sampled:
     fit, rules, _ = read_model(order.model)
     further = further_of(fit.database.names)
     dependencies = dependencies_of(path, order.stature_m, _given(order, further))
+    missing = {name: f"--with {name}=NUMBER" for name in further if name not in dependencies}
     if STATURE in fit.database.names and order.stature_m is None:
-        raise ValueError(f"{order.model} depends on stature: give --stature in metres")
-    for name in further:
-        if name not in dependencies:
-            raise ValueError(
-                f"{order.model} depends on {name}: give --with {name}=NUMBER; its walks have"
-                f" {fit.seen(name)}"
-            )
+        missing = {STATURE: "--stature METRES", **missing}
+    if missing:
+        names = " and ".join("stature" if name == STATURE else name for name in missing)
+        asked = ", ".join(f"{how} ({fit.seen(name)} in its walks)" for name, how in missing.items())
+        raise ValueError(f"{order.model} depends on {names}: give {asked}")
     fit.check_walkable(dependencies)
     model = fit.usual if order.which is None else fit.named(order.which)
     predictor = Predictor(model, SteeringFollower(rules))
@@ -267,7 +275,8 @@ def _course(entry: PlannedWalk) -> str:
 
 def _read(order: WalksOrder, numbers: tuple[str, ...]) -> Entries:
     check_names(numbers)
-    tables, scenes = tables_of(order.rate_hz, order.unit), NamedScenes(order.scene)
+    tables = tables_of(order.rate_hz, order.unit, synthetic=order.synthetic)
+    scenes = NamedScenes(order.scene)
     people = read_people(order.people, numbers)
     return read_entries(order.files, people, scenes, tables, numbers)
 
