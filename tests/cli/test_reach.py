@@ -159,3 +159,17 @@ def test_samples_of_an_export_need_a_stature(tmp_path: Path) -> None:
     (tmp_path / "session.csv").write_text(as_samples(poses_of_reaches(1, 1)))
     said = _COMMAND.refusal("fit", tmp_path / "session.csv", "--out", tmp_path / "x.npz")
     assert "give the person's stature_m in the table of --people" in said
+
+
+def test_one_code_in_several_folders_is_said_to_be_taken_as_one_person(lab: Path) -> None:
+    """Files of one name in two folders are one person's, which the notices say with the folders."""
+    twin = lab / "second" / "0.csv"
+    twin.parent.mkdir()
+    shutil.copy(lab / "1.csv", twin)
+    asked = ("fit", lab / "0.csv", twin, lab / "2.csv", "--out", lab / "codes.npz")
+    found = _COMMAND.figures(*asked)
+    (said,) = (one for one in found["notices"] if "is taken as one" in one)
+    assert said.startswith("person '0' is in 2 folders (")
+    assert "/second)" in said
+    told = _COMMAND.run(*asked).stdout
+    assert "2 people known only by a file or a folder, with the code: '0', '2'" in told

@@ -1,6 +1,7 @@
 """Read the inputs of `reembody reach`: hands in captures, and whose they are."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
@@ -100,11 +101,13 @@ def read_reaches(order: HandsOrder, rules: ReachRules) -> RecordedReaches:
     found.notices.extend(
         require_matched({name: row.at for name, row in people.items()}, order.files, without)
     )
+    folders: dict[str, list[Path]] = {}
     for path in order.files:
         key = rows[path]
         who = _reacher(path, labels[path], None if key is None else people[key], order)
         if key is None:
             found.named_by_file.add(who.subject)
+            folders.setdefault(who.subject, []).append(_folder_of(path))
         if is_session_samples(path):
             tracks = _hands_of_session(path, who, None if key is None else people[key].stature_m)
             found.notices.append(f"{who.source}: {_BOXES}")
@@ -121,7 +124,26 @@ def read_reaches(order: HandsOrder, rules: ReachRules) -> RecordedReaches:
             reaches, left_out = reaches_of(track, rules)
             found.reaches.extend(reaches)
             found.left_out.extend(left_out)
+    found.notices.extend(_same_codes(folders))
     return found
+
+
+def _folder_of(path: Path) -> Path:
+    """Return the folder that tells people of one name apart: a person's of UXF, or the file's."""
+    uxf = [at for at, part in enumerate(path.parts[:-1]) if _UXF_SESSION.fullmatch(part) and at > 0]
+    return Path(*path.parts[: uxf[-1]]) if uxf else path.parent
+
+
+def _same_codes(folders: dict[str, list[Path]]) -> Iterator[str]:
+    """Say which people are in several folders, as in those of two studies, under one code."""
+    for subject, found in folders.items():
+        places = list(dict.fromkeys(found))
+        if len(places) > 1:
+            listed = some_of(["/".join(place.parts[-2:]) or "." for place in places])
+            yield (
+                f"person {subject!r} is in {len(places)} folders ({listed}) and is taken as one"
+                " person: if these are different people, say so with --people"
+            )
 
 
 def _hands(path: Path, who: Reacher, hand: str | None) -> list[HandTrack]:

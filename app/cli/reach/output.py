@@ -32,10 +32,12 @@ def fit_text(done: FittedFile) -> str:
     lines += [f"  {count:4d}  {reason}" for reason, count in counted.most_common()]
     lines += [f"  notice: {text}" for text in done.recorded.notices]
     if named := sorted(done.recorded.named_by_file):
-        shown = ", ".join(named[:_MOST_LISTED]) + (", ..." if len(named) > _MOST_LISTED else "")
+        shown = ", ".join(map(repr, named[:_MOST_LISTED])) + (
+            ", ..." if len(named) > _MOST_LISTED else ""
+        )
         lines.append(
-            f"Known by files only: {shown}. If one person is in several, or several have one name,"
-            " say so with --people."
+            f"{_counted(len(named))} known only by a file or a folder, with the code: {shown}. If"
+            " one person has several codes, or several people have one, say so with --people."
         )
     return "\n".join(lines)
 
