@@ -97,9 +97,13 @@ export function ErrorNotice({ error, texts, onRetry }: ErrorNoticeProps): JSX.El
       </Button>
     );
   const problems = error instanceof ApiError && error.remedy !== null ? error.details : [];
-  return (
-    <Notice tone="bad" title={message} remedy={remedy} actions={retry}>
-      {problems.length > 0 && (
+  // The remedy speaks of what is listed below it.
+  const told =
+    problems.length === 0 ? (
+      remedy
+    ) : (
+      <>
+        {remedy}
         <ul className={classes.problems}>
           {problems.map((one) => (
             <li key={`${one.line} ${one.path} ${one.message}`}>
@@ -107,9 +111,9 @@ export function ErrorNotice({ error, texts, onRetry }: ErrorNoticeProps): JSX.El
             </li>
           ))}
         </ul>
-      )}
-    </Notice>
-  );
+      </>
+    );
+  return <Notice tone="bad" title={message} remedy={told} actions={retry} />;
 }
 
 /** A problem of a file in a line: its place, what is wrong, what to do. */
