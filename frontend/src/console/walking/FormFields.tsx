@@ -53,12 +53,15 @@ type OptionName = "steps" | "k" | "entries" | "people" | "repetitions" | "seed";
 interface WholeNumbersProps<Name extends OptionName> {
   readonly fields: readonly { readonly name: Name; readonly min: number; readonly max: number }[];
   readonly values: Readonly<Record<Name, number>>;
+  /** What a field means, in a line. */
+  readonly hint?: (name: Name) => string;
   readonly onChange: (name: Name, value: number) => void;
 }
 
 export function WholeNumbers<Name extends OptionName>({
   fields,
   values,
+  hint,
   onChange,
 }: WholeNumbersProps<Name>): JSX.Element {
   const { t } = useTexts();
@@ -68,6 +71,7 @@ export function WholeNumbers<Name extends OptionName>({
         <NumberInput
           key={name}
           label={t(`walking.option.${name}`)}
+          description={hint?.(name)}
           value={values[name]}
           min={min}
           max={max}

@@ -102,28 +102,36 @@ function Form({
             onChange={(names) => setOptions({ ...options, depends_on: names })}
           />
         )}
-        <Select
-          label={t("walking.reading")}
-          description={t(`walking.reading.${options.reading}.hint`)}
-          data={READINGS.map((value) => ({ value, label: t(`walking.reading.${value}`) }))}
-          value={options.reading}
-          onChange={(value) => {
-            const reading = READINGS.find((one) => one === value);
-            if (reading !== undefined) setOptions({ ...options, reading });
-          }}
-          allowDeselect={false}
-        />
-        <WholeNumbers
-          fields={NUMBERS}
-          values={options}
-          onChange={(name, value) => setOptions({ ...options, [name]: value })}
-        />
-        {order.isError && <Failure error={order.error} />}
-        <Group justify="flex-end">
-          <Button type="submit" loading={order.isPending} disabled={title.trim() === ""}>
-            {t("walking.fit")}
-          </Button>
-        </Group>
+        <details>
+          <summary>{t("walking.advanced")}</summary>
+          <Stack mt="sm">
+            <Select
+              label={t("walking.reading")}
+              description={t(`walking.reading.${options.reading}.hint`)}
+              data={READINGS.map((value) => ({ value, label: t(`walking.reading.${value}`) }))}
+              value={options.reading}
+              onChange={(value) => {
+                const reading = READINGS.find((one) => one === value);
+                if (reading !== undefined) setOptions({ ...options, reading });
+              }}
+              allowDeselect={false}
+            />
+            <WholeNumbers
+              fields={NUMBERS}
+              values={options}
+              hint={(name) => t(`walking.option.${name}.hint`)}
+              onChange={(name, value) => setOptions({ ...options, [name]: value })}
+            />
+          </Stack>
+        </details>
+        <div className={classes.dialogButtons}>
+          {order.isError && <Failure error={order.error} />}
+          <Group justify="flex-end">
+            <Button type="submit" loading={order.isPending} disabled={title.trim() === ""}>
+              {t("walking.fit")}
+            </Button>
+          </Group>
+        </div>
       </Stack>
     </form>
   );

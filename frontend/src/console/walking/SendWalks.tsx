@@ -6,6 +6,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useSingleSubmit } from "../ui/useSingleSubmit";
 import { walkSetsQuery } from "./queries";
+import classes from "./Walking.module.css";
 
 export interface SourceProps {
   readonly title: string;
@@ -33,13 +34,13 @@ export function Send({ sending, ready }: SendProps): JSX.Element {
   const { t } = useTexts();
   const submit = useSingleSubmit(sending);
   return (
-    <>
+    <div className={classes.dialogButtons}>
       {sending.isError && <Failure error={sending.error} />}
       <Group justify="flex-end">
         <Button loading={sending.isPending} disabled={!ready} onClick={() => submit()}>
           {t("walking.sets.add")}
         </Button>
       </Group>
-    </>
+    </div>
   );
 }

@@ -95,7 +95,8 @@ export const theme = createTheme({
         transitionProps: { duration: 120 },
         overlayProps: { backgroundOpacity: 0.4 },
       },
-      { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { padding: "4px 8px" } },
+      // As in a drawer: the title sticks to the very top.
+      { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { padding: "0 8px" } },
     ),
     Drawer: look<DrawerProps, DrawerStylesNames>(
       { overlayProps: { backgroundOpacity: 0.4 } },
