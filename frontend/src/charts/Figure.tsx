@@ -1,5 +1,6 @@
 /** A Plotly figure from the server. The library is large, so it is loaded with the first figure. */
 import { Center, Loader, Text, useComputedColorScheme } from "@mantine/core";
+import { decimalMark } from "@shared/format";
 import { type JSX, type RefObject, useEffect, useRef, useState } from "react";
 import { heightOf, labelled, type Palette, styled } from "./layout";
 
@@ -100,7 +101,10 @@ function draw(
       await plotly.react(
         element,
         labelled(data, palette),
-        styled(layout, palette, watermark),
+        {
+          separators: separatorsIn(document.documentElement.lang),
+          ...styled(layout, palette, watermark),
+        },
         CONFIG,
       );
       const observer = new ResizeObserver(() => plotly.Plots.resize(element));
@@ -118,6 +122,9 @@ function draw(
     tidy();
   };
 }
+
+/** The marks before decimals and between thousands, as Plotly takes them. */
+const separatorsIn = (language: string): string => (decimalMark(language) === "," ? ",." : ".,");
 
 const CONFIG = {
   displaylogo: false,

@@ -75,8 +75,13 @@ function tenths(
 
 /** A number with at most `digits` decimals in the language's own notation. */
 export function number(value: number, language: string, digits = 2): string {
-  return new Intl.NumberFormat(locale(language), { maximumFractionDigits: digits }).format(value);
+  return new Intl.NumberFormat(locale(language), { maximumFractionDigits: digits })
+    .format(value)
+    .replace("-", "−");
 }
+
+/** What stands before the decimals in this language: `.` or `,`. */
+export const decimalMark = (language: string): string => decimals(0.5, language, 1).charAt(1);
 
 /** `8.00`, `−0.25`: the same number of decimals for every value, so that they can be compared. */
 export function decimals(value: number, language: string, count: number): string {

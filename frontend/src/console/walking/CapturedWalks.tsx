@@ -1,6 +1,7 @@
 /** Cut walks from stored captures: which ones, who walks in each, where, and with what. */
 import { MultiSelect, NumberInput, TagsInput, TextInput } from "@mantine/core";
 import { walking } from "@shared/api/walking";
+import { decimalMark } from "@shared/format";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { capturesQuery } from "../captures/queries";
@@ -95,7 +96,7 @@ interface RecordingFieldsProps {
 
 function RecordingFields(props: RecordingFieldsProps): JSX.Element {
   const { name, names, recording, onChange } = props;
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   const setNumber = (which: string, value: number | string) => {
     const { [which]: _, ...others } = recording.numbers;
     const numbers = typeof value === "number" ? { ...others, [which]: value } : others;
@@ -118,6 +119,7 @@ function RecordingFields(props: RecordingFieldsProps): JSX.Element {
           max={2.6}
           step={0.01}
           decimalScale={2}
+          decimalSeparator={decimalMark(language)}
           value={recording.stature ?? ""}
           onChange={(value) =>
             onChange({ ...recording, stature: typeof value === "number" ? value : null })
@@ -135,6 +137,7 @@ function RecordingFields(props: RecordingFieldsProps): JSX.Element {
             key={which}
             label={numberLabel(which)}
             placeholder={t("walking.numbers.unknown")}
+            decimalSeparator={decimalMark(language)}
             value={recording.numbers[which] ?? ""}
             onChange={(value) => setNumber(which, value)}
           />

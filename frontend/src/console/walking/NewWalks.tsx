@@ -10,6 +10,7 @@ import {
   Textarea,
 } from "@mantine/core";
 import { walking } from "@shared/api/walking";
+import { decimalMark } from "@shared/format";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
@@ -68,7 +69,7 @@ export function NewWalks({ opened, onClose }: NewWalksProps): JSX.Element {
 }
 
 function Tracks({ title, onDone }: SourceProps): JSX.Element {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   const [file, setFile] = useState<File | null>(null);
   const [rateHz, setRate] = useState<number | null>(null);
   const [unit, setUnit] = useState<string | null>(null);
@@ -81,7 +82,10 @@ function Tracks({ title, onDone }: SourceProps): JSX.Element {
         : walking.addTable({
             ...{ file, title, synthetic, rateHz },
             metresPerUnit: unit === null ? null : Number(unit),
-            statures: statures.split("\n").flatMap((line) => line.trim() || []),
+            // 1,78 is a number where commas stand before decimals.
+            statures: statures
+              .split("\n")
+              .flatMap((line) => line.trim().replace(/(\d),(\d+)$/, "$1.$2") || []),
           }),
     onDone,
   );
@@ -100,6 +104,7 @@ function Tracks({ title, onDone }: SourceProps): JSX.Element {
           placeholder={t("walking.rate.hint")}
           min={0.1}
           max={10_000}
+          decimalSeparator={decimalMark(language)}
           value={rateHz ?? ""}
           onChange={(value) => setRate(typeof value === "number" ? value : null)}
         />
