@@ -75,6 +75,8 @@ function ModelDetails({ model }: { readonly model: Model }): JSX.Element {
   );
 }
 
+/** As many characters as the name of the downloaded file has. */
+const SHOWN_OF_HASH = 12;
 /** How the method begins that leaves one of the model's further numbers out. */
 const WITHOUT = "mixed without ";
 const wordsOf = (method: string): string => namedNumber(method.slice(WITHOUT.length)).words;
@@ -141,7 +143,7 @@ function About({ model }: { readonly model: Model }): JSX.Element {
           tau: reading.time_constant_s === null ? "–" : `${n(reading.time_constant_s)} s`,
         }),
       ],
-      [t("walking.fact.hash"), summary.model_hash.slice(0, 16)],
+      [t("walking.fact.hash"), summary.model_hash.slice(0, SHOWN_OF_HASH)],
     );
   }
   return (
@@ -213,41 +215,43 @@ function PredictedDurations({ summary }: { readonly summary: Summary }): JSX.Ele
       ) : (
         <>
           <p className={classes.soft}>{t("walking.predicted.lead")}</p>
-          <table className={classes.numbersTable}>
-            <thead>
-              <tr>
-                <th>{t("walking.predicted.method")}</th>
-                <th>{t("walking.predicted.crps")}</th>
-                <th>{t(given ? "walking.predicted.less" : "walking.predicted.lessAlone")}</th>
-                <th>{t("walking.predicted.inside")}</th>
-              </tr>
-            </thead>
-            <tbody>
-              {predicted.map((one) => {
-                const [less, from, to] = one.crps_less_s;
-                return (
-                  <tr key={one.method}>
-                    <td>{method(one.method)}</td>
-                    <td className="numbers">{s(one.crps_s)}</td>
-                    <td className="numbers">
-                      {one.method === "mixed"
-                        ? "–"
-                        : from === null || to === null
-                          ? s(less)
-                          : t("walking.predicted.range", {
-                              value: s(less),
-                              from: s(from),
-                              to: s(to),
-                            })}
-                    </td>
-                    <td className="numbers">
-                      {percent(one.coverage_50)} / {percent(one.coverage_90)}
-                    </td>
-                  </tr>
-                );
-              })}
-            </tbody>
-          </table>
+          <ScrollBox label={t("walking.predicted")}>
+            <table className={classes.numbersTable}>
+              <thead>
+                <tr>
+                  <th>{t("walking.predicted.method")}</th>
+                  <th>{t("walking.predicted.crps")}</th>
+                  <th>{t(given ? "walking.predicted.less" : "walking.predicted.lessAlone")}</th>
+                  <th>{t("walking.predicted.inside")}</th>
+                </tr>
+              </thead>
+              <tbody>
+                {predicted.map((one) => {
+                  const [less, from, to] = one.crps_less_s;
+                  return (
+                    <tr key={one.method}>
+                      <td>{method(one.method)}</td>
+                      <td className="numbers">{s(one.crps_s)}</td>
+                      <td className="numbers">
+                        {one.method === "mixed"
+                          ? "–"
+                          : from === null || to === null
+                            ? s(less)
+                            : t("walking.predicted.range", {
+                                value: s(less),
+                                from: s(from),
+                                to: s(to),
+                              })}
+                      </td>
+                      <td className="numbers">
+                        {percent(one.coverage_50)} / {percent(one.coverage_90)}
+                      </td>
+                    </tr>
+                  );
+                })}
+              </tbody>
+            </table>
+          </ScrollBox>
           {!given && (
             <p className={classes.soft}>{t("walking.predicted.noInterval", { why: noInterval })}</p>
           )}

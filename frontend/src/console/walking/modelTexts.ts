@@ -38,6 +38,8 @@ export const walkingModelEn = {
   "walking.origin.captures_one": "{{count}} capture",
   "walking.origin.captures_other": "{{count}} captures",
   "walking.scene.shipped": "{{title}} (built in)",
+  "walking.scene.keyed": "{{title}} · {{key}}",
+  "walking.scene.key": "Key, as tables name it: {{key}}",
   "walking.scene.add": "Add a scene",
   "walking.scene.file": "Scene file",
   "walking.scene.told":
@@ -68,10 +70,10 @@ export const walkingModelEn = {
   "walking.leftOut.nodes": "nodes, predicted by radial basis functions",
   "walking.leftOut.people": "whole people, predicted from the others",
   "walking.leftOut.crps":
-    "Mean error of predicted durations for people who were left out (CRPS): {{value}} s; the best of the {{tried}} ways of reading the maps that were compared.",
+    "With the best of the {{tried}} ways of reading the maps that were compared, prob, the paper’s model, predicts durations of people left out with an error (CRPS) of {{value}} s. That of mixed, with which predictions are made, is in the table above.",
   "walking.predicted": "Durations of people left out",
   "walking.predicted.lead":
-    "A quarter of the people at a time is left out and predicted from the others, by this model (mixed) and by three plain baselines that learn from the same walks. No method is close to reality as such: these figures hold for these walks and these baselines.",
+    "A quarter of the people at a time is left out and predicted from the others, by this model (mixed) and by the plainer ones in the other rows, which learn from the same walks. No method is close to reality as such: these figures hold for these walks and these rows.",
   "walking.predicted.method": "Method",
   "walking.predicted.crps": "Error, CRPS (s)",
   "walking.predicted.less": "mixed better by (s), 95 % interval over people",
@@ -132,6 +134,8 @@ export const walkingModelDe: Readonly<Record<keyof typeof walkingModelEn, string
   "walking.origin.captures_one": "{{count}} Aufnahme",
   "walking.origin.captures_other": "{{count}} Aufnahmen",
   "walking.scene.shipped": "{{title}} (mitgeliefert)",
+  "walking.scene.keyed": "{{title}} · {{key}}",
+  "walking.scene.key": "Schlüssel, mit dem Tabellen sie nennen: {{key}}",
   "walking.scene.add": "Szene hinzufügen",
   "walking.scene.file": "Szenendatei",
   "walking.scene.told":
@@ -162,10 +166,10 @@ export const walkingModelDe: Readonly<Record<keyof typeof walkingModelEn, string
   "walking.leftOut.nodes": "Knoten, vorhergesagt mit radialen Basisfunktionen",
   "walking.leftOut.people": "ganze Personen, vorhergesagt aus den anderen",
   "walking.leftOut.crps":
-    "Mittlerer Fehler der vorhergesagten Dauer bei ausgelassenen Personen (CRPS): {{value}} s; die beste von {{tried}} verglichenen Lesarten der Karten.",
+    "Mit der besten von {{tried}} verglichenen Lesarten der Karten sagt prob, das Modell der Veröffentlichung, die Dauern ausgelassener Personen mit einem Fehler (CRPS) von {{value}} s vorher. Der von mixed, mit dem vorhergesagt wird, steht in der Tabelle darüber.",
   "walking.predicted": "Dauern ausgelassener Personen",
   "walking.predicted.lead":
-    "Jeweils ein Viertel der Personen wird ausgelassen und aus den anderen vorhergesagt: von diesem Modell (mixed) und von drei einfachen Vergleichen, die aus denselben Gängen lernen. Kein Verfahren ist an sich wirklichkeitsnah: Die Zahlen gelten für diese Gänge und diese Vergleiche.",
+    "Jeweils ein Viertel der Personen wird ausgelassen und aus den anderen vorhergesagt: von diesem Modell (mixed) und von den einfacheren der anderen Zeilen, die aus denselben Gängen lernen. Kein Verfahren ist an sich wirklichkeitsnah: Die Zahlen gelten für diese Gänge und diese Zeilen.",
   "walking.predicted.method": "Verfahren",
   "walking.predicted.crps": "Fehler, CRPS (s)",
   "walking.predicted.less": "mixed besser um (s), 95-%-Intervall über Personen",

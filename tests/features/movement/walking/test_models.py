@@ -56,7 +56,9 @@ def test_a_models_summary_states_its_data(walking_lab: Lab, model: Json) -> None
     assert {tuple(one["crps_less_s"][1:]) for one in summary["predicted"]} == {(None, None)}
     assert all("3 people cannot say" in one["no_interval"] for one in summary["predicted"])
     path = f"/api/walking/models/{model['id']}"
-    with np.load(io.BytesIO(walking_lab.operator.get(f"{path}/file").content)) as archive:
+    file = walking_lab.operator.get(f"{path}/file")
+    assert f"walking-{summary['model_hash'][:12]}.npz" in file.headers["content-disposition"]
+    with np.load(io.BytesIO(file.content)) as archive:
         assert summary["model_hash"] in archive["header"].tobytes().decode()
 
 

@@ -90,7 +90,10 @@ def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingRes
     """Download the model as a file."""
     with context.database.reading() as db:
         content_hash, _title = ready_content(db, model_id)
-    headers = attachment(f"walking-{content_hash[:12]}.npz")
+        summary = model_view(db, context, model_id).summary
+    # The hash that the page shows and the file itself contains.
+    shown = content_hash if summary is None else summary.model_hash
+    headers = attachment(f"walking-{shown[:12]}.npz")
     return StreamingResponse(sent(context, content_hash), media_type=BYTES, headers=headers)
 
 
