@@ -43,15 +43,15 @@ export function DurationPanel({ prediction, busy }: DurationPanelProps): JSX.Ele
       <div className={classes.answer} role="status">
         <span className={`${classes.median} numbers`}>{t("walking.s", { value: s(q.p50) })}</span>
         <div>
-          <div>
-            {t("walking.ninety", { from: s(q.p05), to: s(q.p95) })} ·{" "}
-            {t("walking.half", { from: s(q.p25), to: s(q.p75) })}
-          </div>
+          <div>{t("walking.ninety", { from: s(q.p05), to: s(q.p95) })}</div>
+          <div>{t("walking.half", { from: s(q.p25), to: s(q.p75) })}</div>
           <div className={classes.soft}>{t("walking.planFor", { to: s(q.p95) })}</div>
         </div>
       </div>
-      <ExtrapolationNotice prediction={prediction} />
-      <NoWalkNotice prediction={prediction} />
+      <div className={classes.notices}>
+        <ExtrapolationNotice prediction={prediction} />
+        <NoWalkNotice prediction={prediction} />
+      </div>
       <SegmentedControl
         mt="xs"
         size="xs"

@@ -1,9 +1,9 @@
 /** The scene with the path, and the same path as numbers for people who do not draw. */
 import { ActionIcon, Button, NumberInput, Select, Switch, Title } from "@mantine/core";
 import type { Point, Prediction, Scene } from "@shared/api/walking";
-import { number } from "@shared/format";
+import { decimalMark, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
-import type { Dispatch, JSX } from "react";
+import { type Dispatch, type JSX, useState } from "react";
 import { useTexts } from "../i18n";
 import { type DrawnPath, hasEndsOf, type PathChange } from "./drawnPath";
 import { SceneDrawing } from "./SceneDrawing";
@@ -13,7 +13,8 @@ import { Synthetic } from "./WalkingTable";
 interface PathPanelProps {
   readonly scene: Scene;
   readonly path: DrawnPath;
-  readonly planned: boolean;
+  /** Whether the path is planned; null where there is nothing to plan around. */
+  readonly planned: boolean | null;
   readonly prediction: Prediction | undefined;
   readonly onPlanned: (planned: boolean) => void;
   readonly onChange: Dispatch<PathChange>;
@@ -37,11 +38,13 @@ export function PathPanel(props: PathPanelProps): JSX.Element {
         </Title>
         {synthetic && <Synthetic />}
         <div className={classes.buttons}>
-          <Switch
-            label={t("walking.plan")}
-            checked={planned}
-            onChange={(event) => onPlanned(event.currentTarget.checked)}
-          />
+          {planned !== null && (
+            <Switch
+              label={t("walking.plan")}
+              checked={planned}
+              onChange={(event) => onPlanned(event.currentTarget.checked)}
+            />
+          )}
           <Button
             size="compact-sm"
             variant="default"
@@ -63,7 +66,7 @@ export function PathPanel(props: PathPanelProps): JSX.Element {
       <SceneDrawing
         scene={scene}
         points={path.points}
-        planned={planned}
+        planned={planned ?? false}
         plannedPath={prediction?.points_m ?? null}
         walkers={prediction?.walkers ?? []}
         synthetic={synthetic}
@@ -79,34 +82,44 @@ export function PathPanel(props: PathPanelProps): JSX.Element {
         </p>
       )}
       <p className={classes.soft}>{t(planned ? "walking.hint.planned" : "walking.hint.drawn")}</p>
-      <Places scene={scene} onChange={onChange} />
+      <Places scene={scene} points={path.points} onChange={onChange} />
       <Numbers points={path.points} onChange={onChange} />
     </section>
   );
 }
 
+/** The paths of the scene, with the one that is drawn. */
 function Places({
   scene,
+  points,
   onChange,
 }: {
   readonly scene: Scene;
+  readonly points: readonly Point[];
   readonly onChange: Dispatch<PathChange>;
 }): JSX.Element | null {
   const { t } = useTexts();
+  const [chosen, setChosen] = useState<string | null>(null);
   if (scene.paths.length === 0) return null;
+  const endsOf = (name: string | null): readonly Point[] => {
+    const path = scene.paths.find((one) => one.name === name);
+    return [path?.start, path?.goal].flatMap((place) => {
+      const point = scene.places[place ?? ""];
+      return point === undefined ? [] : [point];
+    });
+  };
   return (
     <Select
       label={t("walking.scenePath")}
       placeholder={t("walking.scenePath.choose")}
       data={scene.paths.map(({ name }) => name)}
-      value={null}
+      value={points.length === 2 && hasEndsOf(endsOf(chosen), points) ? chosen : null}
       onChange={(name) => {
-        const chosen = scene.paths.find((one) => one.name === name);
-        const [start, goal] = [scene.places[chosen?.start ?? ""], scene.places[chosen?.goal ?? ""]];
-        if (start !== undefined && goal !== undefined) {
-          onChange({ do: "set", points: [start, goal] });
-        }
+        setChosen(name);
+        const ends = endsOf(name);
+        if (ends.length === 2) onChange({ do: "set", points: ends });
       }}
+      allowDeselect={false}
       mt="xs"
     />
   );
@@ -118,7 +131,7 @@ interface NumbersProps {
 }
 
 function Numbers({ points, onChange }: NumbersProps): JSX.Element {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   const last = points.at(-1) ?? [0, 0];
   return (
     <details>
@@ -144,6 +157,7 @@ function Numbers({ points, onChange }: NumbersProps): JSX.Element {
                     size="xs"
                     step={0.1}
                     decimalScale={2}
+                    decimalSeparator={decimalMark(language)}
                     value={point[axis] ?? 0}
                     onChange={(value) => {
                       if (typeof value !== "number") return;

@@ -1,7 +1,7 @@
 /** Query a model: draw a path in a scene, and see the durations of walks along it. */
 import { NumberInput, Select } from "@mantine/core";
-import type { ModelListed, Prediction, Range, SceneListed } from "@shared/api/walking";
-import { number } from "@shared/format";
+import type { ModelListed, Prediction, Range, Scene, SceneListed } from "@shared/api/walking";
+import { decimalMark, number } from "@shared/format";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useMemo, useReducer, useState } from "react";
 import { Failure } from "../errors";
@@ -15,6 +15,7 @@ import { PathPanel } from "./PathPanel";
 import { modelQuery, modelsQuery, predictionQuery, sceneQuery, scenesQuery } from "./queries";
 import { SlicePanel } from "./SlicePanel";
 import classes from "./Walking.module.css";
+import { OPEN_FLOOR, openFloor } from "./walkedScenes";
 
 export const SEED = 1;
 const COUNT = 500;
@@ -57,14 +58,17 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
   const [modelId, setModelId] = useState(models[0]?.id ?? "");
   const [sceneKey, setSceneKey] = useState(scenes.find(({ shipped }) => shipped)?.key ?? "");
   const [path, change] = useReducer(changedPath, NO_PATH);
-  const [planned, setPlanned] = useState(true);
+  const [plans, setPlanned] = useState(true);
   const [settings, set] = useState<Settings>(USUAL);
   const model = models.find(({ id }) => id === modelId) ?? models[0];
-  const dependencies = useDependencies(model);
-  const scene = useQuery({ ...sceneQuery(sceneKey), enabled: sceneKey !== "" });
+  const { further: dependencies, longest } = useDependencies(model);
+  const isOpen = sceneKey === OPEN_FLOOR;
+  const scene = useQuery({ ...sceneQuery(sceneKey), enabled: sceneKey !== "" && !isOpen });
+  // Nothing is in the way of a path that is drawn there.
+  const planned = plans && !isOpen;
   const query = useQuery({
     ...predictionQuery(model?.id ?? "", {
-      scene: sceneKey,
+      scene: isOpen ? null : sceneKey,
       points_m: ends(path.points, planned).map(([x, y]) => [x, y]),
       planned,
       stature_m: settings.stature,
@@ -79,10 +83,22 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
   });
   // The previous answer stays while the next is computed, but not for another path.
   const found = isCompletePath(path.points) && !query.isError ? query.data : undefined;
+  const panel = (there: Scene) => (
+    <PathPanel
+      // A path of another scene is not one of this.
+      key={there.key}
+      scene={there}
+      path={path}
+      planned={isOpen ? null : planned}
+      prediction={found}
+      onPlanned={setPlanned}
+      onChange={change}
+    />
+  );
   return (
     <div className={classes.ask}>
       <div className={classes.column}>
-        <div className={classes.choices}>
+        <div className={`${classes.choices} ${classes.models}`}>
           <Select
             label={t("walking.model")}
             data={models.map(({ id, title, kind }) => ({
@@ -95,7 +111,10 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
           />
           <Select
             label={t("walking.scene")}
-            data={scenes.map(({ key, title }) => ({ value: key, label: title }))}
+            data={[
+              ...scenes.map(({ key, title }) => ({ value: key, label: title })),
+              { value: OPEN_FLOOR, label: t("walking.scene.openFloor") },
+            ]}
             value={sceneKey}
             onChange={(value) => {
               if (value === null) return;
@@ -105,18 +124,13 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
             allowDeselect={false}
           />
         </div>
-        <Loaded query={scene} isTall>
-          {(there) => (
-            <PathPanel
-              scene={there}
-              path={path}
-              planned={planned}
-              prediction={found}
-              onPlanned={setPlanned}
-              onChange={change}
-            />
-          )}
-        </Loaded>
+        {isOpen ? (
+          panel(openFloor(t("walking.scene.openFloor"), longest))
+        ) : (
+          <Loaded query={scene} isTall>
+            {panel}
+          </Loaded>
+        )}
         <SettingsRow settings={settings} dependencies={dependencies} onChange={set} />
       </div>
       <div className={classes.column} aria-busy={query.isFetching}>
@@ -131,20 +145,27 @@ function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
   );
 }
 
-const NO_DEPENDENCIES: ReadonlyMap<string, Range> = new Map();
+interface Dependencies {
+  /** The further numbers on which a model depends, with their ranges in its walks. */
+  readonly further: ReadonlyMap<string, Range>;
+  /** The length of its longest path, m. */
+  readonly longest: number;
+}
 
-/** The further numbers on which a model depends, with their ranges in its walks. */
-function useDependencies(model: ModelListed | undefined): ReadonlyMap<string, Range> {
+const NO_DEPENDENCIES: Dependencies = { further: new Map(), longest: 4 };
+
+function useDependencies(model: ModelListed | undefined): Dependencies {
   const found = useQuery({ ...modelQuery(model?.id ?? ""), enabled: model !== undefined }).data;
   return useMemo(() => {
     const all = found?.summary?.dependencies;
     if (all === undefined) return NO_DEPENDENCIES;
-    return new Map(
+    const further = new Map(
       furtherOf(Object.keys(all)).flatMap((name) => {
         const range = all[name];
         return range === undefined ? [] : [[name, range] as const];
       }),
     );
+    return { further, longest: all["length_m"]?.high ?? NO_DEPENDENCIES.longest };
   }, [found]);
 }
 
@@ -204,6 +225,7 @@ function SettingsRow({ settings, dependencies, onChange }: SettingsRowProps): JS
         max={2.6}
         step={0.01}
         decimalScale={2}
+        decimalSeparator={decimalMark(language)}
       />
       {[...dependencies].map(([name, range]) => (
         <NumberInput
@@ -215,6 +237,7 @@ function SettingsRow({ settings, dependencies, onChange }: SettingsRowProps): JS
           onChange={(value) => setOther(name, value)}
           min={-FARTHEST}
           max={FARTHEST}
+          decimalSeparator={decimalMark(language)}
         />
       ))}
       <NumberInput

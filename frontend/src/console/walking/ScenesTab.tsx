@@ -40,12 +40,15 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
           label={t("walking.scene")}
           data={scenes.map((one) => ({
             value: one.key,
-            label: one.shipped ? t("walking.scene.shipped", { title: one.title }) : one.title,
+            label: t("walking.scene.keyed", {
+              title: one.shipped ? t("walking.scene.shipped", { title: one.title }) : one.title,
+              key: one.key,
+            }),
           }))}
           value={key}
           onChange={(value) => value !== null && setChosenKey(value)}
           allowDeselect={false}
-          w="min(460px, 100%)"
+          w="min(560px, 100%)"
         />
         {canWrite && (
           <FileButton
@@ -64,7 +67,11 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
           </FileButton>
         )}
       </div>
-      {add.isError && <Failure error={add.error} />}
+      {add.isError && (
+        <div className={classes.below}>
+          <Failure error={add.error} />
+        </div>
+      )}
       <Loaded query={useQuery(sceneQuery(key))}>{(scene) => <SceneCard scene={scene} />}</Loaded>
     </>
   );
@@ -93,6 +100,7 @@ function SceneCard({ scene }: { readonly scene: Scene }): JSX.Element {
         <Title order={2} size="h3">
           {scene.title}
         </Title>
+        <p className={classes.soft}>{t("walking.scene.key", { key: scene.key })}</p>
         <Text className={classes.about ?? ""} my="xs">
           {unwrapped(scene.about)}
         </Text>

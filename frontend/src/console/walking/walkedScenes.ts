@@ -1,4 +1,5 @@
 /** In which scenes walks took place, and how many in each. */
+import type { Scene } from "@shared/api/walking";
 import { number } from "@shared/format";
 import { useQuery } from "@tanstack/react-query";
 import { useTexts } from "../i18n";
@@ -6,6 +7,28 @@ import { scenesQuery } from "./queries";
 
 /** What names the floor without obstacles, as in tables of tracks. */
 export const OPEN_FLOOR = "open floor";
+
+const NEAR_M = -2;
+const FEWEST_M = 5;
+
+/** The open floor as a scene, so large that a model's longest path has room on it. */
+export function openFloor(title: string, longest_m: number): Scene {
+  const far = Math.max(FEWEST_M, Math.ceil(longest_m) + 1);
+  return {
+    key: OPEN_FLOOR,
+    title,
+    shipped: true,
+    by: null,
+    at: null,
+    about: "",
+    content_hash: "",
+    bounds_m: [-far / 2, NEAR_M, far / 2, far],
+    clearance_m: 0,
+    obstacles: [],
+    places: {},
+    paths: [],
+  };
+}
 
 export interface WalksInScene {
   /** Null for walks that name no scene: a model's own, or the open floor, is theirs. */
