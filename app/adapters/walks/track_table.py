@@ -335,9 +335,9 @@ def _check_times(person: str, rows: FloatArray, layout: _Layout) -> None:
     if len(late):
         before_s, after_s = times_s[late[0]], times_s[late[0] + 1]
         raise CaptureError(
-            f"the time of person {person!r} goes from {before_s:.10g} s to {after_s:.10g} s; it has"
-            " to increase from row to row. Sort the rows by time. If another recording of this person"
-            " begins here, let its times go on after those before, or give it a file of its own.",
+            f"the time of person {person!r} goes from {before_s:.10g} s to {after_s:.10g} s; it"
+            " has to increase from row to row. Sort the rows by time. If another recording of this"
+            " person begins here, let its times go on after those before, or give it its own file.",
             line=int(rows[late[0] + 1, -1]),
         )
     if len(waits_s) and (usual_s := float(np.median(waits_s))) > LONGEST_STEP_S:
