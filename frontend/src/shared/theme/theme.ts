@@ -95,8 +95,12 @@ export const theme = createTheme({
         transitionProps: { duration: 120 },
         overlayProps: { backgroundOpacity: 0.4 },
       },
-      // As in a drawer: the title sticks to the very top.
-      { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { padding: "0 8px" } },
+      {
+        title: { fontWeight: 620, fontSize: "1.125rem" },
+        content: { padding: "4px 8px" },
+        // It sticks to the very top, above the padding, where scrolled content would show.
+        header: { top: "calc(-1 * var(--mantine-spacing-lg))" },
+      },
     ),
     Drawer: look<DrawerProps, DrawerStylesNames>(
       { overlayProps: { backgroundOpacity: 0.4 } },
