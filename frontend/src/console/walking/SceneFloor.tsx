@@ -11,10 +11,16 @@ interface SceneFloorProps {
   readonly plan: Plan;
 }
 
+/** How far beside its place a name begins, and the room that it needs, in the picture's units. */
+const BESIDE = 14;
+const ROOM = 110;
+
 export function SceneFloor({ scene, plan }: SceneFloorProps): JSX.Element {
   const { t, language } = useTexts();
   const [left, near, right, far] = plan.bounds;
   const [x0, x1, y0, y1] = [plan.x(left), plan.x(right), plan.y(near), plan.y(far)];
+  // A name stands beside its place, where neither the number of a point nor an obstacle covers it.
+  const isNearEdge = (metres: number) => x1 - plan.x(metres) < ROOM;
   return (
     <g>
       <rect className={classes.floor} x={x0} y={y1} width={x1 - x0} height={y0 - y1} />
@@ -59,7 +65,12 @@ export function SceneFloor({ scene, plan }: SceneFloorProps): JSX.Element {
       {Object.entries(scene.places).map(([name, [x, y]]) => (
         <g key={name}>
           <circle className={classes.place} cx={plan.x(x)} cy={plan.y(y)} r={4} />
-          <text className={classes.placeName} x={plan.x(x)} y={plan.y(y) + 24} textAnchor="middle">
+          <text
+            className={classes.placeName}
+            x={plan.x(x) + (isNearEdge(x) ? -BESIDE : BESIDE)}
+            y={plan.y(y) + 4}
+            textAnchor={isNearEdge(x) ? "end" : "start"}
+          >
             {name}
           </text>
         </g>
