@@ -93,6 +93,15 @@ def test_the_report_marks_itself_and_has_what_forms_ask_for(
     assert "nothing is assumed yet" in report["paragraphs"]["preregistration"]
 
 
+def test_the_text_says_who_completed_nothing(
+    study: Path, whole: tuple[Path, dict[str, Any]]
+) -> None:
+    """Beside what the check found stands what it leaves out, and how many complete no task."""
+    printed = _COMMAND.run("merge", whole[0], "--study", study).stdout
+    assert "It does\n  not say whether people complete tasks." in printed
+    assert re.search(r"FOUND: many completed no task: [1-3] of 3 \(hand task, \d+ ms\)", printed)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -55,7 +55,8 @@ def check_text(checked: Checked) -> str:
     ]
     lines += [
         "Statures: the 5th percentile of women and the 95th of men (Huston 2009); pace and",
-        "reactions: assumed. Edges of boxes stop nobody here.",
+        "reactions: assumed. Edges of boxes stop nobody here. So the check finds what cannot be",
+        "reached or has no time; whether people complete tasks, a cohort says (pilot STUDY).",
     ]
     return "\n".join(lines)
 

@@ -60,6 +60,7 @@ def cohort(
     as_json: _Json = False,
 ) -> None:
     """Simulate whole visits: reach, completions, contacts, length, storage and power."""
+    from app.cli.pilot.cohort_text import report_json, report_text
     from app.cli.pilot.inputs import (
         read_assumptions,
         read_avatar,
@@ -67,7 +68,6 @@ def cohort(
         read_shard,
         read_study,
     )
-    from app.cli.pilot.output import report_json, report_text
     from app.cli.pilot.run import CohortOptions, carry_out_cohort, full_report
     from app.features.results.pilot.simulation import CohortOrder, Sharing
 
@@ -163,6 +163,7 @@ def merge(
 ) -> None:
     """Put the parts of a simulation together, wherever they were computed."""
     from app.cli.pilot import output as texts
+    from app.cli.pilot.cohort_text import report_json, report_text
     from app.cli.pilot.run import full_report, study_of
     from app.features.results.pilot.simulation import (
         curve_json,
@@ -176,7 +177,7 @@ def merge(
             people = merged_cohort(records)
             file = study_of(people, study)
             report = full_report(file, people, assumptions, 1, now.now)
-            print(texts.report_json(report) if as_json else texts.report_text(report))
+            print(report_json(report) if as_json else report_text(report))
             return
         curve = merged_curve(records)
     print(curve_json(curve) if as_json else texts.curve_text(curve))

@@ -1,20 +1,8 @@
-"""Print a pilot: how far it is, a cohort's report, the curve, and what it rests on."""
+"""Print a pilot: how far it is, the curve, and what it rests on."""
 
-import json
 from collections.abc import Callable, Iterator
 
-from app.features.results.pilot.simulation import (
-    PUBLISHED,
-    CohortReport,
-    Curve,
-    Progress,
-    Tell,
-    failures_of,
-    paragraphs,
-    reach_sentence,
-    reaching_lines,
-    report_data,
-)
+from app.features.results.pilot.simulation import Curve, Progress, Tell
 from app.science.pilot import PowerPoint, smallest_sufficient
 
 _COLUMNS = (
@@ -35,61 +23,6 @@ def told(study: str, now: Callable[[str], None]) -> Tell:
                 now(f"simulating {study}: {at.done} of {at.total} parts")
 
     return tell
-
-
-def report_json(report: CohortReport) -> str:
-    """Return the report for scripts."""
-    return json.dumps(report_data(report), indent=2)
-
-
-def report_text(report: CohortReport) -> str:
-    """Describe the report."""
-    return "\n".join(_report_lines(report))
-
-
-def _report_lines(report: CohortReport) -> Iterator[str]:
-    cohort = report.cohort
-    header = cohort.header
-    yield (
-        f"SIMULATED: {len(cohort.visits)} of {header['participants']} people in "
-        f"{header['study']}, {header['avatar']}, seed {header['seed']}"
-    )
-    yield f"sha256 {cohort.sha256}; visits that could not be completed: {failures_of(cohort)}"
-    if cohort.real_time_factor is not None:
-        yield f"{cohort.real_time_factor:.1f} s of visits for each second of processor time"
-    if recorded := header.get("reaching"):
-        yield from reaching_lines(recorded, cohort.visits)
-    for visit in cohort.visits:
-        if visit.failure is not None:
-            yield f"  person {visit.number}: {visit.failure}"
-    yield ""
-    yield (
-        "limb  latency  people  tasks (SD)    of lowest  sides  red, s  early  walks back, s  none"
-    )
-    for one in report.cells:
-        share = "-" if one.share_of_lowest is None else f"{100 * one.share_of_lowest:.0f} %"
-        yield (
-            f"{one.limb:4} {one.latency_ms:5.0f} ms {one.people:7d}  {one.completions:5.2f} "
-            f"({one.completions_sd:4.2f}) {share:>11} {one.side_contacts:6.1f} "
-            f"{one.contact_time_s:7.1f} {one.out_of_order:6.2f} {one.walk_back_s:14.1f} "
-            f"{100 * one.at_floor:4.0f} %"
-        )
-    shares = ", ".join(f"{share:g} % at {ms:g} ms" for ms, share in PUBLISHED.items())
-    yield f"Published, end to end (Waltemate et al. 2016, another task): {shares}."
-    if report.changes:
-        yield ""
-        yield "Paired change from the lowest to the highest latency, 95 % t interval:"
-    for change in report.changes:
-        yield (
-            f"  {change.limb} {change.measure}: {change.mean:+.2f} "
-            f"[{change.low:+.2f}, {change.high:+.2f}], n = {change.people}"
-        )
-    yield ""
-    yield reach_sentence(report.reached)
-    for found in report.findings:
-        yield f"  {found.path}: {found.message}"
-    for text in paragraphs(report).values():
-        yield from ("", text)
 
 
 def curve_text(curve: Curve) -> str:

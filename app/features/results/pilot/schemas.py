@@ -144,6 +144,19 @@ class PhaseFigures:
     share_high: float | None = None
 
 
+class WithoutTask(BaseModel):
+    """How many people completed no task with a limb at a latency.
+
+    `is_many`: so many that it is a finding of the cohort.
+    """
+
+    limb: str
+    latency_ms: float
+    people: int
+    without: int
+    is_many: bool
+
+
 class ChangeView(BaseModel):
     """A measure's paired change from the lowest to the highest latency, with its t interval."""
 
@@ -165,7 +178,8 @@ class PublishedView(BaseModel):
 class CohortFigures(BaseModel):
     """The report of a cohort; `sha256` is that of its record, `failures` counts visits.
 
-    `ethics`: a text for the ethics form, by language.
+    `problems` are those of the check, `without_task` what the people did. `ethics`: a text for the
+    ethics form, by language.
     """
 
     sha256: str
@@ -175,6 +189,7 @@ class CohortFigures(BaseModel):
     reach: list[ReachedView]
     problems: list[FindingView]
     phases: list[PhaseFigures]
+    without_task: list[WithoutTask]
     changes: list[ChangeView]
     published: list[PublishedView]
     session_min: float

@@ -29,12 +29,14 @@ from app.features.results.pilot.pilot_queue import PilotQueue
 from app.features.results.pilot.schemas import (
     Avatar,
     NewPilot,
+    PhaseFigures,
     PilotDefaults,
     PilotListed,
     PilotProgress,
     PilotView,
     State,
 )
+from app.features.results.pilot.without_task import without_task
 from app.models import PilotRow, StudyVersion, new_id
 from app.platform.access import Caller, is_blind
 from app.platform.config_problems import invalid_config
@@ -112,7 +114,11 @@ def pilot_view(db: Session, context: AppContext, study_key: str, pilot_id: str) 
     report, curve = summary.get("report"), summary.get("curve")
     # Earlier releases stored texts in English only, and no names.
     ethics = None if report is None else report.get("ethics") or report["paragraphs"]["ethics"]
-    figures = None if report is None else {**report, "ethics": _by_language(ethics)}
+    figures = None
+    if report is not None:
+        phases = [PhaseFigures(**one) for one in report["phases"]]
+        added = {"without_task": without_task(phases), "ethics": _by_language(ethics)}
+        figures = {**report, **added}
     power = None if curve is None else {"names": NO_NAMES, **curve}
     return PilotView.model_validate(
         {

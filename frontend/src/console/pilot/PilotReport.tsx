@@ -36,6 +36,7 @@ interface CohortProps {
 
 function Cohort({ pilot, figures }: CohortProps): JSX.Element {
   const { t, language } = useTexts();
+  const limb = useLimbs();
   const people = pilot.participants[0] ?? 0;
   return (
     <>
@@ -59,6 +60,14 @@ function Cohort({ pilot, figures }: CohortProps): JSX.Element {
           </dd>
           <dt>{t("pilot.facts.failures")}</dt>
           <dd>{t("pilot.facts.failures.value", { failures: figures.failures, people })}</dd>
+          <dt>{t("pilot.facts.idle")}</dt>
+          <dd>
+            {figures.without_task.length === 0
+              ? t("pilot.facts.idle.none")
+              : figures.without_task
+                  .map((one) => t("pilot.facts.idle.value", idleWords(one, limb, language)))
+                  .join(", ")}
+          </dd>
           <dt>{t("pilot.facts.avatar")}</dt>
           <dd>{t(`pilot.avatar.${figures.avatar}`)}</dd>
           {pilot.processor_s !== null && (
@@ -84,9 +93,25 @@ interface FiguresProps {
 }
 
 function Findings({ figures }: FiguresProps): JSX.Element {
-  const { t } = useTexts();
+  const { t, language } = useTexts();
+  const limb = useLimbs();
+  const many = figures.without_task.filter(({ is_many }) => is_many);
   return (
-    <Card title={t("pilot.findings")}>
+    <Card title={t("pilot.findings")} note={t("pilot.findings.scope")}>
+      {many.length > 0 && (
+        <div className={classes.findings}>
+          {many.map((one) => (
+            <Notice
+              key={`${one.limb} ${one.latency_ms}`}
+              tone="warn"
+              title={t("pilot.findings.idle", idleWords(one, limb, language))}
+              remedy={t("pilot.findings.idle.remedy")}
+            >
+              {t("pilot.findings.idle.words", idleWords(one, limb, language))}
+            </Notice>
+          ))}
+        </div>
+      )}
       {figures.problems.length === 0 ? (
         <p className={classes.fine}>
           <Icon name="check" size={18} /> {t("pilot.findings.none")}
@@ -108,6 +133,13 @@ function Findings({ figures }: FiguresProps): JSX.Element {
     </Card>
   );
 }
+
+/** Who completed no task, for a text: how many, with which limb, at which latency. */
+const idleWords = (
+  { limb, latency_ms, people, without }: CohortFigures["without_task"][number],
+  limbOf: (limb: string) => string,
+  language: string,
+) => ({ without, people, limb: limbOf(limb), latency: number(latency_ms, language, 0) });
 
 function Phases({ figures }: FiguresProps): JSX.Element {
   const { t, language } = useTexts();

@@ -87,13 +87,23 @@ export const pilotEn = {
   "pilot.facts.length.noWalks": "≈ {{minutes}} min",
   "pilot.facts.storage": "Movement of one person",
   "pilot.facts.storage.value": "≈ {{size}} MB",
-  "pilot.facts.failures": "Visits that could not be completed",
+  "pilot.facts.failures": "Visits that did not come to their end",
   "pilot.facts.failures.value": "{{failures}} of {{people}}",
   "pilot.facts.avatar": "Avatar",
   "pilot.facts.time": "Processor time of the last run",
   "pilot.facts.hash": "SHA-256 of the record",
   "pilot.findings": "What would break the study",
-  "pilot.findings.none": "Nothing was found that would break the study.",
+  "pilot.findings.none": "The check found nothing that would break the study.",
+  "pilot.findings.scope":
+    "The check looks for boxes out of reach, phases too short for a first task, latencies longer than what is kept, orders that are not balanced and tests that cannot be significant. Its slow person never misses, and edges of boxes stop nobody in it: whether people complete tasks is below, under “What they did”.",
+  "pilot.findings.idle": "Many complete no task: {{limb}}, {{latency}} ms",
+  "pilot.findings.idle.words":
+    "{{without}} of {{people}} simulated people complete no task with the {{limb}} at {{latency}} ms.",
+  "pilot.findings.idle.remedy":
+    "Simulated people do not get used to a latency, and with physics they are caught at solid edges, so real people may well do better. Simulate the delayed copy, too: if many complete nothing there either, the phase is too short or the task too hard.",
+  "pilot.facts.idle": "Complete no task in a phase",
+  "pilot.facts.idle.none": "nobody",
+  "pilot.facts.idle.value": "{{without}} of {{people}} ({{limb}}, {{latency}} ms)",
   "pilot.kind.out_of_reach": "Out of reach",
   "pilot.kind.phase_too_short": "Phase too short",
   "pilot.kind.latency_over_buffer": "Latency too long",
@@ -136,7 +146,7 @@ export const pilotEn = {
   "pilot.measure.out_of_order": "Early touches",
   "pilot.reach": "Reach of short and tall bodies",
   "pilot.reach.note":
-    "The first task of a slow person who never misses, at the longest latency. Statures: the 5th percentile of women and the 95th of men (Huston 2009).",
+    "The first task of a slow person who never misses, at the longest latency. Statures: the 5th percentile of women and the 95th of men (Huston 2009). Pace and reactions are assumed. Edges of boxes stop nobody here, so people in contact with them take longer or do not finish.",
   "pilot.col.hand": "Side",
   "pilot.hand.left": "left",
   "pilot.hand.right": "right",
@@ -275,7 +285,17 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.facts.time": "Prozessorzeit des letzten Laufs",
   "pilot.facts.hash": "SHA-256 der Aufzeichnung",
   "pilot.findings": "Woran die Studie scheitern würde",
-  "pilot.findings.none": "Es wurde nichts gefunden, woran die Studie scheitern würde.",
+  "pilot.findings.none": "Die Prüfung hat nichts gefunden, woran die Studie scheitern würde.",
+  "pilot.findings.scope":
+    "Die Prüfung sucht nach Kästen außer Reichweite, Phasen, die für eine erste Aufgabe zu kurz sind, Latenzen über das Aufbewahrte hinaus, unausgewogenen Reihenfolgen und Tests, die nie signifikant sein können. Ihre langsame Person greift nie daneben, und Kanten halten darin niemanden auf: Ob Menschen Aufgaben schaffen, steht unter „Was sie gemacht haben“.",
+  "pilot.findings.idle": "Viele schaffen keine Aufgabe: {{limb}}, {{latency}} ms",
+  "pilot.findings.idle.words":
+    "{{without}} von {{people}} simulierten Menschen schaffen bei {{latency}} ms keine Aufgabe ({{limb}}).",
+  "pilot.findings.idle.remedy":
+    "Simulierte Menschen gewöhnen sich nicht an eine Latenz und bleiben mit Physik an festen Kanten hängen, echten kann es also besser gehen. Simulieren Sie auch die verzögerte Kopie: Schaffen viele auch dort nichts, ist die Phase zu kurz oder die Aufgabe zu schwer.",
+  "pilot.facts.idle": "Keine Aufgabe in einer Phase",
+  "pilot.facts.idle.none": "niemand",
+  "pilot.facts.idle.value": "{{without}} von {{people}} ({{limb}}, {{latency}} ms)",
   "pilot.kind.out_of_reach": "Außer Reichweite",
   "pilot.kind.phase_too_short": "Phase zu kurz",
   "pilot.kind.latency_over_buffer": "Verzögerung zu lang",
@@ -319,7 +339,7 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.measure.out_of_order": "Zu frühe Berührungen",
   "pilot.reach": "Reichweite kleiner und großer Körper",
   "pilot.reach.note":
-    "Die erste Aufgabe einer langsamen Person, die nie danebengreift, bei der längsten Verzögerung. Körpergrößen: 5. Perzentil der Frauen und 95. der Männer (Huston 2009).",
+    "Die erste Aufgabe einer langsamen Person, die nie danebengreift, bei der längsten Verzögerung. Körpergrößen: 5. Perzentil der Frauen und 95. der Männer (Huston 2009). Tempo und Reaktionen sind angenommen. Kanten der Kästen halten hier niemanden auf, mit ihnen dauert es länger oder gelingt nicht.",
   "pilot.col.hand": "Seite",
   "pilot.hand.left": "links",
   "pilot.hand.right": "rechts",

@@ -5332,7 +5332,8 @@ export interface components {
          * CohortFigures
          * @description The report of a cohort; `sha256` is that of its record, `failures` counts visits.
          *
-         *     `ethics`: a text for the ethics form, by language.
+         *     `problems` are those of the check, `without_task` what the people did. `ethics`: a text for the
+         *     ethics form, by language.
          */
         readonly CohortFigures: {
             /**
@@ -5366,6 +5367,8 @@ export interface components {
             readonly unfinished: number;
             /** Walk Back Min */
             readonly walk_back_min: number;
+            /** Without Task */
+            readonly without_task: readonly components["schemas"]["WithoutTask"][];
         };
         /**
          * ColliderChange
@@ -13427,6 +13430,24 @@ export interface components {
          */
         readonly WhoView: {
             readonly account: components["schemas"]["AccountView"] | null;
+        };
+        /**
+         * WithoutTask
+         * @description How many people completed no task with a limb at a latency.
+         *
+         *     `is_many`: so many that it is a finding of the cohort.
+         */
+        readonly WithoutTask: {
+            /** Is Many */
+            readonly is_many: boolean;
+            /** Latency Ms */
+            readonly latency_ms: number;
+            /** Limb */
+            readonly limb: string;
+            /** People */
+            readonly people: number;
+            /** Without */
+            readonly without: number;
         };
         /**
          * WornBy

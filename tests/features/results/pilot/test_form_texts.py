@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import pytest
 
+from app.features.results.pilot.schemas import PhaseFigures
 from app.features.results.pilot.simulation.check import Reached
 from app.features.results.pilot.simulation.form_texts import Rehearsed, ethics_texts
+from app.features.results.pilot.without_task import without_task
 from app.texts import LANGUAGES
 
 REACHED = Reached("hand", "left", "tall", 1.869, 200.0, (), 3.0)
@@ -50,8 +52,54 @@ def test_another_avatar_than_the_studys_own_is_named() -> None:
 
 
 def test_visits_that_failed_are_counted() -> None:
-    """The text counts what could not be completed, and otherwise says that all were."""
-    assert "all of these visits could be completed" in ethics_texts(AS_PLANNED)["en"]
+    """The text counts visits that ended early, and otherwise says that all came to their end."""
+    assert "all of these visits came to their end" in ethics_texts(AS_PLANNED)["en"]
     texts = ethics_texts(replace(AS_PLANNED, failures=1))
     assert "1 of these visits could not be completed" in texts["en"]
     assert "Termine, die nicht zu Ende kamen: 1." in texts["de"]
+
+
+def _phase(limb: str, latency_ms: float, people: int, at_floor: float) -> PhaseFigures:
+    means = dict.fromkeys(("completions", "completions_sd", "side_contacts", "contact_time_s"), 1.0)
+    return PhaseFigures(
+        limb=limb,
+        latency_ms=latency_ms,
+        people=people,
+        out_of_order=0.0,
+        walk_back_s=0.0,
+        at_floor=at_floor,
+        share_of_lowest=1.0,
+        **means,
+    )
+
+
+def test_who_completes_nothing_is_counted_where_it_happens() -> None:
+    """Three of four without a task are a finding; one of twelve is named only."""
+    found = without_task(
+        [
+            _phase("hand", 0.0, 12, 0.0),
+            _phase("hand", 125.0, 12, 1 / 12),
+            _phase("hand", 350.0, 4, 0.75),
+        ]
+    )
+    assert [(one.latency_ms, one.without, one.people, one.is_many) for one in found] == [
+        (350.0, 3, 4, True),
+        (125.0, 1, 12, False),
+    ]
+
+
+def test_visits_that_ended_are_not_called_done_tasks() -> None:
+    """The ethics text says how many completed no task, or that everybody completed one."""
+    idle = without_task([_phase("hand", 350.0, 4, 0.75)])
+    said = ethics_texts(replace(AS_PLANNED, without_task=idle))
+    assert "completed no task in a phase: 3 of 4 (hand task, 350 ms)." in said["en"]
+    assert "keine Aufgabe geschafft: 3 von 4 (Handaufgabe, 350 ms)." in said["de"]
+    all_did = ethics_texts(replace(AS_PLANNED, without_task=()))
+    assert "Everybody completed at least one task in every phase." in all_did["en"]
+
+
+def test_reach_is_said_with_what_the_check_leaves_out() -> None:
+    """Both texts say that edges of boxes stopped nobody when reach was checked."""
+    said = ethics_texts(AS_PLANNED)
+    assert "edges of boxes stop nobody" in said["en"]
+    assert "Kanten der Kästen niemanden aufhalten" in said["de"]

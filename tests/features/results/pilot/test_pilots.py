@@ -64,6 +64,8 @@ def test_a_cohort_has_the_bytes_of_the_command(
     for one in figures["phases"]:
         # In phases of 3 s nobody completes a task, so there are no shares.
         assert {one["share_of_lowest"], one["share_low"], one["share_high"]} == {None}
+    idle = [(one["without"], one["people"], one["is_many"]) for one in figures["without_task"]]
+    assert idle == [(_PEOPLE, _PEOPLE, True)] * 2
     assert f"{_PEOPLE} simulated people (seed 5)" in figures["ethics"]["en"]
     assert "Ein Termin der Studie „Zwei Verzögerungen, Handaufgabe“" in figures["ethics"]["de"]
     assert pilot["power"] is None

@@ -16,6 +16,7 @@ from app.features.results.pilot.simulation.cohort_record import is_cohort
 from app.features.results.pilot.simulation.form_texts import (
     preregistration_texts,
     reach_sentence,
+    without_task_words,
 )
 from app.features.results.pilot.simulation.plan import (
     Chunk,
@@ -48,6 +49,7 @@ from app.features.results.pilot.simulation.report import (
     report_on,
 )
 from app.features.results.pilot.simulation.simulated_study import SimulatedStudy
+from app.features.results.pilot.without_task import without_task
 from app.simulated_people.visits import AvatarKind
 
 __all__ = [
@@ -89,4 +91,6 @@ __all__ = [
     "report_on",
     "simulate_cohort",
     "simulate_power",
+    "without_task",
+    "without_task_words",
 ]

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
+from app.features.results.pilot.schemas import WithoutTask
 from app.features.results.pilot.simulation.check import Reached
 from app.features.results.pilot.simulation.power import Curve
 from app.protocol import PRIMARY_DIRECTIONS, PRIMARY_MEASURES, PrimaryNames
@@ -66,8 +67,10 @@ _REACH_UNKNOWN: Final = Words(
     en="Reach was not looked at.", de="Die Reichweite wurde nicht geprüft."
 )
 _REACHED: Final = Words(
-    en="Every box was reached by simulated bodies {{bodies}}.",
-    de="Simulierte Körper {{bodies}} haben jeden Kasten erreicht.",
+    en="Every box was reached by simulated bodies {{bodies}} in a check in which edges of boxes "
+    "stop nobody.",
+    de="Simulierte Körper {{bodies}} haben jeden Kasten erreicht, in einer Prüfung, in der die "
+    "Kanten der Kästen niemanden aufhalten.",
 )
 _OUT_OF_REACH: Final = Words(
     en="Out of reach of simulated bodies {{bodies}}: {{which}}.",
@@ -92,7 +95,21 @@ _REHEARSED: Final = Words(
     "{{seed}}) geprobt",
 )
 _ALL_COMPLETED: Final = Words(
-    en="; all of these visits could be completed.", de="; alle diese Termine kamen zu Ende."
+    en="; all of these visits came to their end.", de="; alle diese Termine kamen zu Ende."
+)
+_WITH_TASKS: Final = Words(
+    en=" Everybody completed at least one task in every phase.",
+    de=" Alle haben in jeder Phase mindestens eine Aufgabe geschafft.",
+)
+_WITHOUT_TASK: Final = Words(
+    en=" Some of them completed no task in a phase: {{which}}. Simulated people do not get used to "
+    "a latency.",
+    de=" Manche haben in einer Phase keine Aufgabe geschafft: {{which}}. Simulierte Menschen "
+    "gewöhnen sich nicht an eine Latenz.",
+)
+_WITHOUT_TASK_HERE: Final = Words(
+    en="{{without}} of {{people}} ({{limb}}, {{latency}} ms)",
+    de="{{without}} von {{people}} ({{limb}}, {{latency}} ms)",
 )
 _SOME_FAILED: Final = Words(
     en="; {{failures}} of these visits could not be completed.",
@@ -122,8 +139,9 @@ class Rehearsed:
     """What the text for the ethics form says of a cohort.
 
     `title`: that of the study, by language. `used` and `own`: the avatar of the simulation and that
-    of the study. `session_min` includes `walk_back_min`. `reaching`: what the record says of
-    recorded hands, None without them.
+    of the study. `without_task`: where people completed no task, None if nobody did any phase.
+    `session_min` includes `walk_back_min`. `reaching`: what the record says of recorded hands, None
+    without them.
     """
 
     title: Mapping[str, str]
@@ -136,6 +154,7 @@ class Rehearsed:
     walk_back_min: float
     storage_mb: float
     reached: Sequence[Reached]
+    without_task: Sequence[WithoutTask] | None = None
     reaching: Mapping[str, Any] | None = None
 
 
@@ -179,6 +198,7 @@ def _ethics(one: Rehearsed, language: str) -> str:
         if one.failures
         else _ALL_COMPLETED.in_language(language)
     )
+    people += _tasks_sentence(one.without_task, language)
     if one.used != one.own:
         used, own = (_AVATARS[kind].in_language(language) for kind in (one.used, one.own))
         people += _filled(_ANOTHER_AVATAR, language, used=used, own=own)
@@ -188,6 +208,30 @@ def _ethics(one: Rehearsed, language: str) -> str:
         people += _filled(_AS_RECORDED, language, made=made, **recorded)
     storage = _filled(_STORAGE, language, size=_number(one.storage_mb, 0, language))
     return f"{visit}. {people} {reach_sentence(one.reached, language)} {storage}"
+
+
+def _tasks_sentence(found: Sequence[WithoutTask] | None, language: str) -> str:
+    """Say whether everybody completed a task in every phase, which a visit's end does not."""
+    if found is None:
+        return ""
+    if not found:
+        return _WITH_TASKS.in_language(language)
+    return _filled(_WITHOUT_TASK, language, which=without_task_words(found, language))
+
+
+def without_task_words(found: Sequence[WithoutTask], language: str = "en") -> str:
+    """List how many people completed no task, by limb and latency."""
+    return ", ".join(
+        _filled(
+            _WITHOUT_TASK_HERE,
+            language,
+            without=one.without,
+            people=one.people,
+            limb=_LIMBS[one.limb].in_language(language),
+            latency=_decimal(f"{one.latency_ms:g}", language),
+        )
+        for one in found
+    )
 
 
 def _preregistration(curve: Curve | None, language: str) -> str:

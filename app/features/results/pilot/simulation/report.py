@@ -22,6 +22,7 @@ from app.features.results.pilot.simulation.recorded_reaching import (
     reaching_assumptions,
     reaching_data,
 )
+from app.features.results.pilot.without_task import without_task
 from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
 from app.science.statistics import FloatArray
 from app.simulated_people.visits import AvatarKind, PhaseOutcome, Visit, avatar_kind_of
@@ -111,6 +112,7 @@ def form_texts(report: CohortReport) -> Mapping[str, Texts]:
         walk_back_min=report.walk_back_min,
         storage_mb=report.storage_mb,
         reached=report.reached,
+        without_task=without_task(report.cells) if report.cells else None,
         reaching=header.get("reaching"),
     )
     return {
@@ -143,6 +145,7 @@ def report_data(report: CohortReport) -> dict[str, Any]:
         "reach": [asdict(one) for one in report.reached],
         "problems": [asdict(one) for one in report.findings],
         "phases": [asdict(one) for one in report.cells],
+        "without_task": [one.model_dump() for one in without_task(report.cells)],
         "changes": [asdict(one) for one in report.changes],
         "published": [
             {"end_to_end_ms": ms, "performance_percent": share} for ms, share in PUBLISHED.items()
