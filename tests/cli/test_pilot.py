@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from app.cli.commands import app
+from app.cli.errors import INCOMPLETE
 from app.resources import study_configs_dir
 from tests.cli.invoked import Invoked
 
@@ -30,6 +31,10 @@ def test_the_same_bytes_however_it_is_computed(tmp_path: Path) -> None:
     for (part, record), rest in zip(enumerate(records, start=1), (5, 5, 6), strict=True):
         unfinished = json.loads(_power("--shard", f"{part}/3", "--out", record))["unfinished"]
         assert unfinished == rest
+    two = _COMMAND.run("merge", *records[:2])
+    assert two.exit_code == INCOMPLETE
+    assert two.stdout.startswith("SIMULATED, UNFINISHED")
+    assert "missing: 2 parts. To finish, run --shard 3/3, and merge all parts" in two.stdout
     merged = _COMMAND.run("merge", *records, "--json")
     assert merged.stdout == whole
     curve = json.loads(whole)

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from app.cli.errors import INCOMPLETE
 from app.cli.pilot.run import CohortOptions, carry_out_cohort
 from app.features.results.pilot.simulation import Cohort, CohortOrder, Sharing
 from app.features.results.pilot.simulation.cohort_record import open_record
@@ -62,6 +63,29 @@ def test_the_same_bytes_however_it_is_shared_out(
     assert _without_machine(merged) == _without_machine(report)
     assert merged["real_time_factor"] is None
     assert "is no shipped one: give its file with --study" in _COMMAND.refusal("merge", *shards)
+
+
+def test_a_part_is_no_finished_cohort(study: Path, tmp_path: Path) -> None:
+    """One part of two says in all its words that it is unfinished, and which part is missing."""
+    part = tmp_path / "part.jsonl"
+    printed = _COMMAND.run(study, *_PEOPLE, "--shard", "1/2", "--out", part).stdout
+    assert printed.startswith("SIMULATED, UNFINISHED: 2 of 3 people")
+    assert "missing: 1 people. To finish, run --shard 2/2, and merge all parts" in printed
+    assert "rehearsed with" not in printed
+    merged = _COMMAND.run("merge", part, "--study", study)
+    assert (merged.exit_code, merged.stdout) == (INCOMPLETE, _without_speed(printed))
+    assert "run --shard 2/2" in merged.stderr
+    figures = json.loads(_COMMAND.run("merge", part, "--study", study, "--json").stdout)
+    assert (figures["unfinished"], figures["paragraphs"]) == (1, {})
+
+
+def _without_speed(text: str) -> str:
+    """Return a report without the line on this machine's speed, as a merge prints it."""
+    return "".join(
+        line
+        for line in text.splitlines(keepends=True)
+        if "each second of processor time" not in line
+    )
 
 
 def test_a_killed_run_resumes(

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator
 
+from app.cli.pilot.output import missing_line
 from app.features.results.pilot.simulation import (
     PUBLISHED,
     CohortReport,
@@ -27,13 +28,28 @@ def report_text(report: CohortReport) -> str:
 
 
 def _report_lines(report: CohortReport) -> Iterator[str]:
+    yield from _head(report)
+    yield ""
+    yield from _phases(report)
+    if report.changes:
+        yield ""
+        yield from _changes(report)
+    yield ""
+    yield from _found(report)
+    yield from _texts(report)
+
+
+def _head(report: CohortReport) -> Iterator[str]:
     cohort = report.cohort
     header = cohort.header
+    state = "SIMULATED, UNFINISHED" if cohort.unfinished else "SIMULATED"
     yield (
-        f"SIMULATED: {len(cohort.visits)} of {header['participants']} people in "
+        f"{state}: {len(cohort.visits)} of {header['participants']} people in "
         f"{header['study']}, {header['avatar']}, seed {header['seed']}"
     )
-    yield (f"sha256 {cohort.sha256}; visits that did not come to their end: {failures_of(cohort)}")
+    if cohort.unfinished:
+        yield missing_line(cohort.unfinished, "people", cohort.missing)
+    yield f"sha256 {cohort.sha256}; visits that did not come to their end: {failures_of(cohort)}"
     if cohort.real_time_factor is not None:
         yield f"{cohort.real_time_factor:.1f} s of visits for each second of processor time"
     if recorded := header.get("reaching"):
@@ -41,7 +57,9 @@ def _report_lines(report: CohortReport) -> Iterator[str]:
     for visit in cohort.visits:
         if visit.failure is not None:
             yield f"  person {visit.number}: {visit.failure}"
-    yield ""
+
+
+def _phases(report: CohortReport) -> Iterator[str]:
     yield (
         "limb  latency  people  tasks (SD)    of lowest  sides  red, s  early  walks back, s  none"
     )
@@ -55,16 +73,21 @@ def _report_lines(report: CohortReport) -> Iterator[str]:
         )
     shares = ", ".join(f"{share:g} % at {ms:g} ms" for ms, share in PUBLISHED.items())
     yield f"Published, end to end (Waltemate et al. 2016, another task): {shares}."
-    if report.changes:
-        yield ""
-        yield "Paired change from the lowest to the highest latency, 95 % t interval:"
+
+
+def _changes(report: CohortReport) -> Iterator[str]:
+    yield "Paired change from the lowest to the highest latency, 95 % t interval:"
     for change in report.changes:
         yield (
             f"  {change.limb} {change.measure}: {change.mean:+.2f} "
             f"[{change.low:+.2f}, {change.high:+.2f}], n = {change.people}"
         )
-    yield ""
-    yield from _found(report)
+
+
+def _texts(report: CohortReport) -> Iterator[str]:
+    if report.cohort.unfinished:
+        yield ""
+        yield "The texts for the ethics form and the preregistration come with a finished cohort."
     for text in paragraphs(report).values():
         yield from ("", text)
 

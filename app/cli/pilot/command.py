@@ -3,6 +3,7 @@
 import json
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -161,7 +162,7 @@ def merge(
     ] = None,
     as_json: _Json = False,
 ) -> None:
-    """Put the parts of a simulation together, wherever they were computed."""
+    """Put the parts of a simulation together; the exit code is 1 if some are missing."""
     from app.cli.pilot import output as texts
     from app.cli.pilot.cohort_text import report_json, report_text
     from app.cli.pilot.run import full_report, study_of
@@ -178,6 +179,17 @@ def merge(
             file = study_of(people, study)
             report = full_report(file, people, assumptions, 1, now.now)
             print(report_json(report) if as_json else report_text(report))
+            _require_finished(people.unfinished, "people", people.missing)
             return
         curve = merged_curve(records)
     print(curve_json(curve) if as_json else texts.curve_text(curve))
+    _require_finished(curve.unfinished, "parts", curve.missing)
+
+
+def _require_finished(unfinished: int, what: str, shards: Sequence[str]) -> None:
+    """End with the exit code of incomplete work if something is missing, and say what."""
+    from app.cli.pilot.output import missing_line
+
+    if unfinished:
+        print(f"reembody: {missing_line(unfinished, what, shards)}", file=sys.stderr)
+        raise typer.Exit(INCOMPLETE)

@@ -1,6 +1,6 @@
 """Print a pilot: how far it is, the curve, and what it rests on."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from app.features.results.pilot.simulation import Curve, Progress, Tell
 from app.science.pilot import PowerPoint, smallest_sufficient
@@ -25,6 +25,12 @@ def told(study: str, now: Callable[[str], None]) -> Tell:
     return tell
 
 
+def missing_line(count: int, what: str, shards: Sequence[str]) -> str:
+    """Say what is not simulated yet, and which shards to run and merge."""
+    how = f"run --shard {' and '.join(shards)}" if shards else "run the other shards"
+    return f"UNFINISHED, missing: {count} {what}. To finish, {how}, and merge all parts."
+
+
 def curve_text(curve: Curve) -> str:
     """Describe a curve, with its assumptions below it."""
     return "\n".join(_lines(curve))
@@ -34,7 +40,8 @@ def _lines(curve: Curve) -> Iterator[str]:
     header, test = curve.header, curve.header["test"]
     measure = test["score"] or test["measure"]
     kind = "preregistered test" if header["preregistered"] else "test that might be declared"
-    yield f"SIMULATED: the power of the {kind} of {header['study']}, if people are as assumed"
+    state = "SIMULATED, UNFINISHED" if curve.unfinished else "SIMULATED"
+    yield f"{state}: the power of the {kind} of {header['study']}, if people are as assumed"
     way, alpha = test["direction"], header["alpha"]
     yield f"{test['test']} of {measure} ({test['limb']}), {way}, alpha {alpha:g}"
     yield f"{header['sets']} data sets with the effect and as many without, seed {header['seed']}"
@@ -42,7 +49,7 @@ def _lines(curve: Curve) -> Iterator[str]:
     yield _COLUMNS
     yield from map(_row, curve.points)
     if curve.unfinished:
-        yield f"{curve.unfinished} parts are not computed yet: run the other shards, and merge them"
+        yield missing_line(curve.unfinished, "parts", curve.missing)
     yield ""
     target = header["target"]
     smallest = smallest_sufficient(curve.points, target)

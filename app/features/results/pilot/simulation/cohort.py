@@ -23,7 +23,13 @@ from app.features.results.pilot.simulation.cohort_record import (
     open_record,
     plain,
 )
-from app.features.results.pilot.simulation.plan import PilotStudy, Progress, Sharing, Tell
+from app.features.results.pilot.simulation.plan import (
+    PilotStudy,
+    Progress,
+    Sharing,
+    Tell,
+    missing_shards,
+)
 from app.features.results.pilot.simulation.recorded_reaching import reaching_header
 from app.platform.workers import end_with_parent
 from app.protocol import StudyProtocol
@@ -67,6 +73,12 @@ class Cohort:
     def unfinished(self) -> int:
         """The number of visits that are not simulated yet."""
         return int(self.header["participants"]) - len(self.visits)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """The shards that are not here, as in 2/3; empty if what is missing is no whole shard."""
+        present = {visit.number for visit in self.visits}
+        return missing_shards(int(self.header["participants"]), present)
 
     @property
     def sha256(self) -> str:

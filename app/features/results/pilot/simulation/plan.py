@@ -5,7 +5,7 @@ random numbers depend on the seed and on what the chunk is, and on nothing else,
 shared out changes no number.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -48,6 +48,19 @@ class Progress:
     stage: Literal["check", "people", "power"]
     done: int
     total: int
+
+
+def missing_shards(total: int, present: Collection[int]) -> tuple[str, ...]:
+    """Name the shards that are missing, as in 2/3, of work that is shared out by position.
+
+    Empty if nothing is missing, or if no whole shards are.
+    """
+    missing = {at for at in range(total) if at not in present}
+    for parts in range(2, total + 1):
+        gone = [part for part in range(parts) if missing.issuperset(range(part, total, parts))]
+        if missing and sum(len(range(part, total, parts)) for part in gone) == len(missing):
+            return tuple(f"{part + 1}/{parts}" for part in gone)
+    return ()
 
 
 Tell = Callable[[Progress], None]

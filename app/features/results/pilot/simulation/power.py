@@ -19,6 +19,7 @@ from app.features.results.pilot.simulation.plan import (
     Tell,
     chunks_of,
     make_plan,
+    missing_shards,
 )
 from app.features.results.pilot.simulation.power_record import (
     FORMAT,
@@ -55,13 +56,15 @@ class Curve:
     """The power by number of participants, with all that it depends on.
 
     `unfinished`: chunks of other shards that are not in the record. `names`: what the study calls
-    what its test names by key; records do not have them.
+    what its test names by key; records do not have them. `missing`: the shards that are not in
+    it, as in 2/3, if whole ones are missing.
     """
 
     header: Mapping[str, Any]
     points: tuple[PowerPoint, ...]
     unfinished: int
     names: PrimaryNames = NO_NAMES
+    missing: tuple[str, ...] = ()
 
 
 def simulate_power(
@@ -140,7 +143,9 @@ def curve_of(record: Record) -> Curve:
         )
         points.append(power_point(n, effect, null, header["assumed_difference"]))
     unfinished = sum(chunk not in record.results for chunk in wanted)
-    return Curve(header, tuple(points), unfinished)
+    present = {at for at, chunk in enumerate(wanted) if chunk in record.results}
+    missing = missing_shards(len(wanted), present)
+    return Curve(header, tuple(points), unfinished, missing=missing)
 
 
 def curve_json(curve: Curve) -> str:

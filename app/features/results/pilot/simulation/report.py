@@ -122,7 +122,9 @@ def form_texts(report: CohortReport) -> Mapping[str, Texts]:
 
 
 def paragraphs(report: CohortReport) -> Mapping[str, str]:
-    """Return the texts for forms in English, as the command prints them."""
+    """Return the texts for forms in English, as the command prints them; none of a part alone."""
+    if report.cohort.unfinished:
+        return {}
     return {name: texts["en"] for name, texts in form_texts(report).items()}
 
 
@@ -141,6 +143,7 @@ def report_data(report: CohortReport) -> dict[str, Any]:
         "sha256": report.cohort.sha256,
         "real_time_factor": report.cohort.real_time_factor,
         "unfinished": report.cohort.unfinished,
+        "missing_shards": report.cohort.missing,
         "failures": failures_of(report.cohort),
         "reach": [asdict(one) for one in report.reached],
         "problems": [asdict(one) for one in report.findings],
