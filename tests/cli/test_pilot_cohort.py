@@ -117,6 +117,19 @@ def test_the_report_marks_itself_and_has_what_forms_ask_for(
     assert "nothing is assumed yet" in report["paragraphs"]["preregistration"]
 
 
+def test_the_text_has_the_words_and_limits_of_the_page(
+    study: Path, whole: tuple[Path, dict[str, Any]]
+) -> None:
+    """Measures have the page's names and units, and the known limitations stand with them."""
+    printed = _COMMAND.run("merge", whole[0], "--study", study).stdout
+    assert "sides touched  red (s)  early touches  walks back (s)  no task" in printed
+    assert "Red time is summed over the sides" in printed
+    assert "Known limitations: simulated people do not get used to a latency" in printed
+    assert "Do not rely on completions at long latencies." in printed
+    assert not re.search("side_contacts|contact_time_s|out_of_order", printed)
+    assert "Breaks and putting on the equipment are not included." in printed
+
+
 def test_the_text_says_who_completed_nothing(
     study: Path, whole: tuple[Path, dict[str, Any]]
 ) -> None:

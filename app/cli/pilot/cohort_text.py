@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator
 
-from app.cli.pilot.output import missing_line
+from app.cli.pilot.output import assumption_lines, missing_line
 from app.features.results.pilot.simulation import (
     PUBLISHED,
     CohortReport,
@@ -12,6 +12,7 @@ from app.features.results.pilot.simulation import (
     reach_sentence,
     reaching_lines,
     report_data,
+    rounded,
     without_task,
     without_task_words,
 )
@@ -36,7 +37,12 @@ def _report_lines(report: CohortReport) -> Iterator[str]:
         yield from _changes(report)
     yield ""
     yield from _found(report)
+    yield ""
+    yield from _length(report)
     yield from _texts(report)
+    if assumed := report_data(report)["assumptions"]:
+        yield ""
+        yield from assumption_lines(assumed)
 
 
 def _head(report: CohortReport) -> Iterator[str]:
@@ -61,27 +67,69 @@ def _head(report: CohortReport) -> Iterator[str]:
 
 def _phases(report: CohortReport) -> Iterator[str]:
     yield (
-        "limb  latency  people  tasks (SD)    of lowest  sides  red, s  early  walks back, s  none"
+        "limb  latency  people  tasks (SD)    of lowest  sides touched  red (s)  early touches"
+        "  walks back (s)  no task"
     )
     for one in report.cells:
-        share = "-" if one.share_of_lowest is None else f"{100 * one.share_of_lowest:.0f} %"
+        share = "-" if one.share_of_lowest is None else f"{rounded(100 * one.share_of_lowest, 0)} %"
         yield (
-            f"{one.limb:4} {one.latency_ms:5.0f} ms {one.people:7d}  {one.completions:5.2f} "
-            f"({one.completions_sd:4.2f}) {share:>11} {one.side_contacts:6.1f} "
-            f"{one.contact_time_s:7.1f} {one.out_of_order:6.2f} {one.walk_back_s:14.1f} "
-            f"{100 * one.at_floor:4.0f} %"
+            f"{one.limb:4} {one.latency_ms:5.0f} ms {one.people:7d}  "
+            f"{rounded(one.completions, 2):>5} ({rounded(one.completions_sd, 2):>4}) {share:>11} "
+            f"{rounded(one.side_contacts, 1):>14} {rounded(one.contact_time_s, 1):>8} "
+            f"{rounded(one.out_of_order, 2):>14} {rounded(one.walk_back_s, 1):>15} "
+            f"{rounded(100 * one.at_floor, 0):>6} %"
         )
+    yield "All are means per person and phase. Red time is summed over the sides that are red, so"
+    yield "it can be longer than the phase."
     shares = ", ".join(f"{share:g} % at {ms:g} ms" for ms, share in PUBLISHED.items())
     yield f"Published, end to end (Waltemate et al. 2016, another task): {shares}."
+    contacts = report.cohort.header["avatar"] != "delayed_copy"
+    yield (
+        "Known limitations: simulated people do not get used to a latency within a phase"
+        + (", and with this avatar they are" if contacts else ".")
+    )
+    yield (
+        "caught at solid edges. " if contacts else ""
+    ) + "Do not rely on completions at long latencies."
+
+
+_MEASURES = {
+    "completions": "tasks",
+    "side_contacts": "sides touched",
+    "contact_time_s": "red (s)",
+    "out_of_order": "early touches",
+}
 
 
 def _changes(report: CohortReport) -> Iterator[str]:
     yield "Paired change from the lowest to the highest latency, 95 % t interval:"
     for change in report.changes:
-        yield (
-            f"  {change.limb} {change.measure}: {change.mean:+.2f} "
-            f"[{change.low:+.2f}, {change.high:+.2f}], n = {change.people}"
+        interval = (
+            f"[{_signed(change.low)}, {_signed(change.high)}]"
+            if change.low < change.high
+            else "no interval, everybody changed alike"
         )
+        yield (
+            f"  {change.limb} {_MEASURES[change.measure]}: {_signed(change.mean)} {interval},"
+            f" n = {change.people}"
+        )
+
+
+def _signed(value: float) -> str:
+    text = rounded(value, 2)
+    return text if text.startswith("-") else f"+{text}"
+
+
+def _length(report: CohortReport) -> Iterator[str]:
+    yield (
+        f"Length of a visit: about {rounded(report.session_min, 0)} min, not simulated as a whole:"
+        f" {rounded(report.planned_min, 0)} min are set by"
+    )
+    yield (
+        f"the protocol, {rounded(report.walk_back_min, 1)} min are simulated walks back, and the"
+        " rest is an estimate of forms, texts and steps by"
+    )
+    yield "hand. Breaks and putting on the equipment are not included."
 
 
 def _texts(report: CohortReport) -> Iterator[str]:

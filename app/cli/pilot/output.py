@@ -1,6 +1,7 @@
 """Print a pilot: how far it is, the curve, and what it rests on."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 from app.features.results.pilot.simulation import Curve, Progress, Tell
 from app.science.pilot import PowerPoint, smallest_sufficient
@@ -77,8 +78,13 @@ def _lines(curve: Curve) -> Iterator[str]:
     difference = header["assumed_difference"]
     yield f"Assumed difference, longest against shortest latency: {difference:.3g} of {measure}."
     yield ""
+    yield from assumption_lines(header["assumptions"])
+
+
+def assumption_lines(assumptions: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield what is assumed, each number with its unit and its source."""
     yield "Assumptions, none of them a finding:"
-    for one in header["assumptions"]:
+    for one in assumptions:
         value = one["value"]
         shown = ", ".join(f"{x:g}" for x in value) if isinstance(value, list) else f"{value:g}"
         yield f"  {one['name']}: {shown} {one['unit']} ({one['source']})"

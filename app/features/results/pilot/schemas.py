@@ -178,6 +178,8 @@ class PublishedView(BaseModel):
 class CohortFigures(BaseModel):
     """The report of a cohort; `sha256` is that of its record, `failures` counts visits.
 
+    `session_min` is the time that the protocol sets (`planned_min`; null in pilots of earlier
+    releases), the simulated walks back, and an estimate of the rest; breaks are not in it.
     `problems` are those of the check, `without_task` what the people did. `ethics`: a text for the
     ethics form, by language.
     """
@@ -193,6 +195,7 @@ class CohortFigures(BaseModel):
     changes: list[ChangeView]
     published: list[PublishedView]
     session_min: float
+    planned_min: float | None = None
     walk_back_min: float
     storage_mb: float
     ethics: dict[str, str]

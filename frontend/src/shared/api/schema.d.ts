@@ -5332,6 +5332,8 @@ export interface components {
          * CohortFigures
          * @description The report of a cohort; `sha256` is that of its record, `failures` counts visits.
          *
+         *     `session_min` is the time that the protocol sets (`planned_min`; null in pilots of earlier
+         *     releases), the simulated walks back, and an estimate of the rest; breaks are not in it.
          *     `problems` are those of the check, `without_task` what the people did. `ethics`: a text for the
          *     ethics form, by language.
          */
@@ -5351,6 +5353,8 @@ export interface components {
             readonly failures: number;
             /** Phases */
             readonly phases: readonly components["schemas"]["PhaseFigures"][];
+            /** Planned Min */
+            readonly planned_min?: number | null;
             /** Problems */
             readonly problems: readonly components["schemas"]["FindingView"][];
             /** Published */

@@ -6,7 +6,7 @@ import pytest
 
 from app.features.results.pilot.schemas import PhaseFigures
 from app.features.results.pilot.simulation.check import Reached
-from app.features.results.pilot.simulation.form_texts import Rehearsed, ethics_texts
+from app.features.results.pilot.simulation.form_texts import Rehearsed, ethics_texts, rounded
 from app.features.results.pilot.without_task import without_task
 from app.texts import LANGUAGES
 
@@ -19,6 +19,7 @@ AS_PLANNED = Rehearsed(
     used="physics",
     own="physics",
     session_min=13.7,
+    planned_min=4.0,
     walk_back_min=1.26,
     storage_mb=6.2,
     reached=[REACHED],
@@ -103,3 +104,22 @@ def test_reach_is_said_with_what_the_check_leaves_out() -> None:
     said = ethics_texts(AS_PLANNED)
     assert "edges of boxes stop nobody" in said["en"]
     assert "Kanten der Kästen niemanden aufhalten" in said["de"]
+
+
+def test_the_length_of_a_visit_says_what_it_consists_of() -> None:
+    """What the protocol sets, what is simulated and what is estimated are told apart."""
+    said = ethics_texts(AS_PLANNED)
+    assert "1.3 minutes are simulated walks back between tasks; 4 minutes are set" in said["en"]
+    assert "Breaks and putting on the equipment are not included" in said["en"]
+    assert "4 Minuten gibt das Studienprotokoll vor, der Rest ist" in said["de"]
+
+
+def test_halves_are_rounded_as_on_the_page() -> None:
+    """A half is rounded away from zero, and what rounds to zero has no sign."""
+    assert [rounded(value, 1) for value in (10.25, 77.25, -0.25, 0.75)] == [
+        "10.3",
+        "77.3",
+        "-0.3",
+        "0.8",
+    ]
+    assert (rounded(-0.001, 2), rounded(12.5, 0)) == ("0.00", "13")

@@ -16,6 +16,7 @@ from app.features.results.pilot.simulation.cohort_record import is_cohort
 from app.features.results.pilot.simulation.form_texts import (
     preregistration_texts,
     reach_sentence,
+    rounded,
     without_task_words,
 )
 from app.features.results.pilot.simulation.plan import (
@@ -89,6 +90,7 @@ __all__ = [
     "reaching_lines",
     "report_data",
     "report_on",
+    "rounded",
     "simulate_cohort",
     "simulate_power",
     "without_task",

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from decimal import ROUND_HALF_UP, Decimal
 from typing import Any, Final
 
 from app.features.results.pilot.schemas import WithoutTask
@@ -85,8 +86,14 @@ _VISIT: Final = Words(
     de="Ein Termin der Studie „{{title}}“ dauert etwa {{minutes}} Minuten",
 )
 _WALKS_BACK: Final = Words(
-    en=", of which {{minutes}} minutes are walks back between tasks",
-    de=", davon {{minutes}} Minuten Rückwege zwischen den Aufgaben",
+    en=", of which {{minutes}} minutes are simulated walks back between tasks",
+    de=", davon {{minutes}} Minuten simulierte Rückwege zwischen den Aufgaben",
+)
+_REST_OF_VISIT: Final = Words(
+    en="; {{planned}} minutes are set by the protocol, and the rest is an estimate of forms, texts "
+    "and steps by hand. Breaks and putting on the equipment are not included",
+    de="; {{planned}} Minuten gibt das Studienprotokoll vor, der Rest ist für Fragebögen, Texte "
+    "und Schritte von Hand geschätzt. Pausen und das Anlegen der Ausrüstung sind nicht enthalten",
 )
 _REHEARSED: Final = Words(
     en="Before anybody takes part, the procedure was rehearsed with {{people}} simulated people "
@@ -140,8 +147,8 @@ class Rehearsed:
 
     `title`: that of the study, by language. `used` and `own`: the avatar of the simulation and that
     of the study. `without_task`: where people completed no task, None if nobody did any phase.
-    `session_min` includes `walk_back_min`. `reaching`: what the record says of recorded hands, None
-    without them.
+    `session_min` includes `planned_min` and `walk_back_min`. `reaching`: what the record says
+    of recorded hands, None without them.
     """
 
     title: Mapping[str, str]
@@ -151,6 +158,7 @@ class Rehearsed:
     used: AvatarKind
     own: AvatarKind
     session_min: float
+    planned_min: float
     walk_back_min: float
     storage_mb: float
     reached: Sequence[Reached]
@@ -192,6 +200,8 @@ def _ethics(one: Rehearsed, language: str) -> str:
     back = _number(one.walk_back_min, 1, language)
     if back != _number(0.0, 1, language):
         visit += _filled(_WALKS_BACK, language, minutes=back)
+    planned = _number(one.planned_min, 0, language)
+    visit += _filled(_REST_OF_VISIT, language, planned=planned)
     people = _filled(_REHEARSED, language, people=one.people, seed=one.seed)
     people += (
         _filled(_SOME_FAILED, language, failures=one.failures)
@@ -297,8 +307,15 @@ def _filled(words: Words, language: str, **values: object) -> str:
     return text
 
 
+def rounded(value: float, decimals: int) -> str:
+    """Return a number with so many decimals, halves away from zero, as the pages round."""
+    text = f"{Decimal(value).quantize(Decimal(1).scaleb(-decimals), ROUND_HALF_UP):f}"
+    # What rounds to zero has no sign.
+    return text if text.strip("-0.") else text.removeprefix("-")
+
+
 def _number(value: float, decimals: int, language: str) -> str:
-    return _decimal(f"{value:.{decimals}f}", language)
+    return _decimal(rounded(value, decimals), language)
 
 
 def _decimal(number: str, language: str) -> str:

@@ -52,7 +52,8 @@ class CohortReport:
 
     `title`: that of the study, by language. `own_avatar`: the kind of avatar that the study has,
     whichever the cohort had. `session_min`: the estimated length of a visit, with the mean of the
-    walks back. `storage_mb`: of one visit's recorded movement.
+    walks back; the protocol sets `planned_min` of it. `storage_mb`: of one visit's
+    recorded movement.
     """
 
     title: Mapping[str, str]
@@ -61,6 +62,7 @@ class CohortReport:
     cells: tuple[PhaseFigures, ...]
     changes: tuple[Change, ...]
     session_min: float
+    planned_min: float
     walk_back_min: float
     storage_mb: float
     reached: tuple[Reached, ...]
@@ -83,13 +85,15 @@ def report_on(
         if one.kind in TIMED_KINDS
     )
     cells = tuple(_cells(finished))
+    time = visit_time(study, pilot.instruments)
     return CohortReport(
         title=study.title,
         own_avatar=avatar_kind_of(study),
         cohort=cohort,
         cells=cells,
         changes=tuple(_changes(finished)),
-        session_min=visit_time(study, pilot.instruments).total + back_min,
+        session_min=time.total + back_min,
+        planned_min=time.planned,
         walk_back_min=back_min,
         storage_mb=(recorded_s / 60.0 + back_min) * _MB_PER_MINUTE,
         reached=checked.reached,
@@ -109,6 +113,7 @@ def form_texts(report: CohortReport) -> Mapping[str, Texts]:
         used=header["avatar"],
         own=report.own_avatar,
         session_min=report.session_min,
+        planned_min=report.planned_min,
         walk_back_min=report.walk_back_min,
         storage_mb=report.storage_mb,
         reached=report.reached,
@@ -154,6 +159,7 @@ def report_data(report: CohortReport) -> dict[str, Any]:
             {"end_to_end_ms": ms, "performance_percent": share} for ms, share in PUBLISHED.items()
         ],
         "session_min": report.session_min,
+        "planned_min": report.planned_min,
         "walk_back_min": report.walk_back_min,
         "storage_mb": report.storage_mb,
         "power": [] if curve is None else [asdict(one) for one in curve.points],
