@@ -76,8 +76,11 @@ def imbalances(orders: tuple[Sequence, ...]) -> list[str]:
     uneven = {key: one for key, one in position_counts(orders).items() if len(set(one)) > 1}
     if uneven:
         key, counts = max(uneven.items(), key=lambda one: max(one[1]) - min(one[1]))
-        each = ", ".join(str(count) for count in counts)
-        found.append(f"{key} is at positions 1 to {len(counts)} {each} times")
+        each = ", ".join(
+            f"{count} time{'' if count == 1 else 's'} at position {at}"
+            for at, count in enumerate(counts, start=1)
+        )
+        found.append(f"{key} comes {each}")
     pairs = neighbour_counts(orders)
     if len(set(pairs.values())) > 1:
         most, least = max(pairs, key=lambda one: pairs[one]), min(pairs, key=lambda one: pairs[one])

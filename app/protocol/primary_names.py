@@ -28,8 +28,8 @@ PRIMARY_MEASURES = {
 """The measures of a primary test that are no scores."""
 PRIMARY_DIRECTIONS = {
     "two_sided": Words(en="two-sided", de="zweiseitig"),
-    "rises": Words(en="it rises", de="es steigt"),
-    "falls": Words(en="it falls", de="es fällt"),
+    "rises": Words(en="it rises", de="steigend"),
+    "falls": Words(en="it falls", de="fallend"),
 }
 NO_NAMES = PrimaryNames(None, None, None)
 """Where nothing but the keys is known."""

@@ -92,7 +92,8 @@ def test_unbalanced_orders_and_hopeless_numbers_are_named(tmp_path: Path) -> Non
     orders = _changed(SHIPPED, "orders:\n  design: all_permutations\n", _ORDERS)
     problems = _checked(orders + _DECLARED, tmp_path)["problems"]
     by_kind = {one["path"]: one for one in problems}
-    assert "latency_350 is at positions 1 to 3 0, 0, 2 times" in by_kind["orders"]["message"]
+    where = "0 times at position 1, 0 times at position 2, 2 times at position 3"
+    assert f"latency_350 comes {where}" in by_kind["orders"]["message"]
     said = [one["message"] for one in problems if one["path"] == "preregistration.planned_n"]
     assert "5 participants do not fill 2 orders equally" in said[0]
     assert "0.0625 at best" in said[1]

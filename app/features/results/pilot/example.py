@@ -16,7 +16,8 @@ from app.protocol import (
 )
 from app.science.instruments import Instrument
 
-_REPLACE: Final = "assumed in an example: replace it"
+EXAMPLE_SOURCE: Final = "assumed in an example: replace it"
+"""The source of every number that nobody has replaced yet."""
 _HEAD: Final = """\
 # An example for this study. Nobody has measured any of these numbers: replace each by what you
 # expect of your participants, and say in its source where it comes from. docs/pilot.md explains
@@ -163,7 +164,7 @@ def _thresholds(ratings: int) -> dict[str, Any]:
     count = max(ratings - 1, 1)
     width = 2.0 * _OUTERMOST_THRESHOLD / max(count - 1, 1)
     values = [round(-_OUTERMOST_THRESHOLD + width * at, 3) for at in range(count)]
-    return {"values": values if count > 1 else [0.0], "unit": "logits", "source": _REPLACE}
+    return {"values": values if count > 1 else [0.0], "unit": "logits", "source": EXAMPLE_SOURCE}
 
 
 def _performance(study: StudyProtocol, measure: str, limbs: list[str]) -> dict[str, Any]:
@@ -185,7 +186,7 @@ def _performance(study: StudyProtocol, measure: str, limbs: list[str]) -> dict[s
 
 
 def _number(value: float, unit: str) -> dict[str, Any]:
-    return {"value": value, "unit": unit, "source": _REPLACE}
+    return {"value": value, "unit": unit, "source": EXAMPLE_SOURCE}
 
 
 def _written(node: Mapping[str, Any], indent: str = "") -> str:
@@ -204,4 +205,4 @@ def _inline(value: Plain) -> str:
         return f"{{{', '.join(f'{key}: {_inline(one)}' for key, one in value.items())}}}"
     if isinstance(value, list):
         return f"[{', '.join(map(_inline, value))}]"
-    return f'"{value}"' if value == _REPLACE else f"{value}"
+    return f'"{value}"' if value == EXAMPLE_SOURCE else f"{value}"

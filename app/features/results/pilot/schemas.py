@@ -71,6 +71,7 @@ class PilotDefaults(BaseModel):
     of a closed ledger; null if it grows. `assumptions`: the file that comes with the product for
     this study, null if there is none; `assumptions_trouble`: why that one does not fit the version.
     `example`: a file made for the study, whose numbers are to be replaced; null if there is none.
+    `person_s`: a rough estimate of the processor time for one person, by avatar.
     """
 
     version: int
@@ -81,6 +82,7 @@ class PilotDefaults(BaseModel):
     assumptions: str | None
     assumptions_trouble: str | None
     example: str | None
+    person_s: dict[Avatar, float]
 
 
 class PilotProgress(BaseModel):
@@ -236,7 +238,8 @@ class AssumptionView(BaseModel):
 class PowerFigures(BaseModel):
     """A power curve; `preregistered` is false if only the assumptions name the test.
 
-    `names`: for the keys in the test, as far as they are known.
+    `names`: for the keys in the test, as far as they are known. `score_range`: the lowest and the
+    highest score that are possible; null if nobody states them, and in pilots of earlier releases.
     """
 
     planned_n: int
@@ -247,6 +250,7 @@ class PowerFigures(BaseModel):
     test: PrimaryTest
     names: PrimaryNames
     assumed_difference: float
+    score_range: tuple[float, float] | None = None
     assumptions_sha256: str
     smallest_sufficient_n: int | None
     power: list[PowerPointView]

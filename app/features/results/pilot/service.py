@@ -47,8 +47,10 @@ from app.protocol import (
     LoadedAssumptions,
     LoadedStudy,
     StudyProtocol,
+    compile_plan,
     declared_analysis,
     load_assumptions,
+    sequences,
 )
 from app.resources import study_configs_dir
 from app.science.instruments import Instrument
@@ -62,6 +64,12 @@ PILOTS: Final = JobKind(
     details=lambda row: {"kind": row.kind, "study": row.options["study"]},
 )
 _PARTICIPANTS: Final = 12
+_SHARE_OF_ACTIVE_TIME: Final[Mapping[Avatar, float]] = {
+    "physics": 24.0 / 360.0,
+    "physics_without_fingers": 12.0 / 360.0,
+    "delayed_copy": 5.0 / 360.0,
+}
+"""Processor time for each second of tasks, as measured on one core (docs/benchmarks.md, pilot)."""
 
 
 def pilot_defaults(db: Session, study_key: str, caller: Caller) -> PilotDefaults:
@@ -92,7 +100,15 @@ def pilot_defaults(db: Session, study_key: str, caller: Caller) -> PilotDefaults
         example=None
         if is_blind(db, caller, protocol, None)
         else example_assumptions(protocol, _instruments(db, version)),
+        person_s=_person_s(protocol),
     )
+
+
+def _person_s(protocol: StudyProtocol) -> dict[Avatar, float]:
+    """Return roughly the processor time that one person takes, by avatar."""
+    plan = compile_plan(protocol, sequences(protocol)[0])
+    active_s = sum(step.duration_s or 0.0 for step in plan if step.kind == "task")
+    return {kind: active_s * share for kind, share in _SHARE_OF_ACTIVE_TIME.items()}
 
 
 def pilot_list(db: Session, context: AppContext, study_key: str) -> list[PilotListed]:

@@ -108,7 +108,9 @@ def _cohort(order: PilotOrder, files: PilotFolder, course: _Course) -> Json:
 def _with_curve(report: Json | None, curve: Curve | None) -> Json:
     return {
         "report": report,
-        "curve": None if curve is None else curve_data(curve) | {"names": asdict(curve.names)},
+        "curve": None
+        if curve is None
+        else curve_data(curve) | {"names": asdict(curve.names), "score_range": curve.score_range},
         "preregistration": preregistration_texts(curve),
     }
 

@@ -9514,6 +9514,7 @@ export interface components {
          *     of a closed ledger; null if it grows. `assumptions`: the file that comes with the product for
          *     this study, null if there is none; `assumptions_trouble`: why that one does not fit the version.
          *     `example`: a file made for the study, whose numbers are to be replaced; null if there is none.
+         *     `person_s`: a rough estimate of the processor time for one person, by avatar.
          */
         readonly PilotDefaults: {
             /** Assumptions */
@@ -9533,6 +9534,10 @@ export interface components {
             readonly numbers: readonly number[];
             /** Participants */
             readonly participants: number;
+            /** Person S */
+            readonly person_s: {
+                readonly [key: string]: number;
+            };
             /** Version */
             readonly version: number;
         };
@@ -9744,7 +9749,8 @@ export interface components {
          * PowerFigures
          * @description A power curve; `preregistered` is false if only the assumptions name the test.
          *
-         *     `names`: for the keys in the test, as far as they are known.
+         *     `names`: for the keys in the test, as far as they are known. `score_range`: the lowest and the
+         *     highest score that are possible; null if nobody states them, and in pilots of earlier releases.
          */
         readonly PowerFigures: {
             /** Alpha */
@@ -9762,6 +9768,11 @@ export interface components {
             readonly power: readonly components["schemas"]["PowerPointView"][];
             /** Preregistered */
             readonly preregistered: boolean;
+            /** Score Range */
+            readonly score_range?: readonly [
+                number,
+                number
+            ] | null;
             /** Sets */
             readonly sets: number;
             /** Smallest Sufficient N */

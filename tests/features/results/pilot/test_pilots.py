@@ -42,6 +42,8 @@ def _assumptions(lab: Lab) -> str:
     defaults = ok(lab.operator.get(f"/api/studies/{STUDY}/pilot-defaults"))
     assert defaults["numbers"] == [6, 9, 12, 18, 24]
     assert defaults["most_participants"] is None
+    # Six minutes of tasks, about 24 s of processor time for one person with physics.
+    assert defaults["person_s"]["physics"] == pytest.approx(24.0)
     return str(defaults["assumptions"])
 
 
@@ -190,8 +192,8 @@ def test_the_power_of_a_study_is_simulated(study: Lab) -> None:
         said = pilot["preregistration"][language]
         assert words in said
         assert names["score"][language] in said
-        assert names["instrument"][language] in said
         assert not {"page_trend", "karas2020"} & set(said.split())
+        assert names["instrument"][language] in said
 
 
 @pytest.mark.one_engine

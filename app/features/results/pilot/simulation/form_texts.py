@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Decimal
 from typing import Any, Final
 
+from app.features.results.pilot.example import EXAMPLE_SOURCE
 from app.features.results.pilot.schemas import WithoutTask
 from app.features.results.pilot.simulation.check import Reached
 from app.features.results.pilot.simulation.power import Curve
@@ -51,6 +52,33 @@ _SIMULATED: Final = Words(
     "Zahl von Teilnehmenden simuliert, in den Reihenfolgen der Studie und mit ihren Ausschlüssen, "
     "Startwert {{seed}}: {{points}}. Die Bänder sind Clopper-Pearson-Intervalle von 95 %. All das "
     "folgt aus Annahmen, die in dieser Studie niemand gemessen hat (SHA-256 {{sha256}}).",
+)
+_DECLARED: Final = Words(
+    en=" The test is the one that the study preregisters.",
+    de=" Der Test ist der, den die Studie präregistriert.",
+)
+_OF_ASSUMPTIONS: Final = Words(
+    en=" The study preregisters no test: this one stands in the assumptions.",
+    de=" Die Studie präregistriert keinen Test: Dieser steht in den Annahmen.",
+)
+_OF_EXAMPLE: Final = Words(
+    en=" The study preregisters no test: this one stands in the assumptions, which began as the "
+    "inserted example.",
+    de=" Die Studie präregistriert keinen Test: Dieser steht in den Annahmen, die als eingefügtes "
+    "Beispiel begannen.",
+)
+_EXAMPLE_KEPT: Final = Words(
+    en=" {{kept}} of the {{all}} assumed numbers are still those of the example.",
+    de=" {{kept}} der {{all}} angenommenen Zahlen sind noch die des Beispiels.",
+)
+_EFFECT: Final = Words(
+    en=" Assumed effect: from the shortest to the longest latency, the mean of {{measure}} changes "
+    "by {{difference}}{{range}} in people whom nothing else disturbs.",
+    de=" Angenommene Wirkung: Von der kürzesten zur längsten Latenz ändert sich das Mittel "
+    "({{measure}}) um {{difference}}{{range}}, bei Menschen, die sonst nichts stört.",
+)
+_POSSIBLE: Final = Words(
+    en=" (possible are {{low}} to {{high}})", de=" (möglich sind {{low}} bis {{high}})"
 )
 _TEST: Final = Words(
     en="{{test}}: {{measure}}, {{limb}}, by added latency; {{direction}}",
@@ -257,12 +285,40 @@ def _preregistration(curve: Curve | None, language: str) -> str:
         seed=header["seed"],
         points="; ".join(_point(one, language) for one in curve.points),
         sha256=header["assumptions_sha256"],
-    )
+    ) + _basis(curve, language)
+
+
+def _basis(curve: Curve, language: str) -> str:
+    """Say where the test comes from, and which effect is assumed."""
+    header, sources = curve.header, [one["source"] for one in curve.header["assumptions"]]
+    kept = sources.count(EXAMPLE_SOURCE)
+    assumed = _OF_EXAMPLE if kept else _OF_ASSUMPTIONS
+    said = (_DECLARED if header["preregistered"] else assumed).in_language(language)
+    if kept:
+        said += _filled(_EXAMPLE_KEPT, language, kept=kept, all=len(sources))
+    possible = ""
+    if curve.score_range is not None:
+        low, high = (_decimal(f"{end:g}", language) for end in curve.score_range)
+        possible = _filled(_POSSIBLE, language, low=low, high=high)
+    difference = _number(header["assumed_difference"], 2, language)
+    measure = _measure_words(header["test"], curve.names, language)
+    return said + _filled(_EFFECT, language, measure=measure, difference=difference, range=possible)
 
 
 def _test_words(test: Mapping[str, Any], names: PrimaryNames, language: str) -> str:
     """Return a test as the preregistration page names it."""
-    measure = (
+    return _filled(
+        _TEST,
+        language,
+        test=statistical_test(test["test"]).name.in_language(language),
+        measure=_measure_words(test, names, language),
+        limb=_LIMBS[test["limb"]].in_language(language),
+        direction=PRIMARY_DIRECTIONS[test["direction"]].in_language(language),
+    )
+
+
+def _measure_words(test: Mapping[str, Any], names: PrimaryNames, language: str) -> str:
+    return (
         _filled(
             _SCORE,
             language,
@@ -271,14 +327,6 @@ def _test_words(test: Mapping[str, Any], names: PrimaryNames, language: str) -> 
         )
         if test["measure"] == "score"
         else PRIMARY_MEASURES[test["measure"]].in_language(language)
-    )
-    return _filled(
-        _TEST,
-        language,
-        test=statistical_test(test["test"]).name.in_language(language),
-        measure=measure,
-        limb=_LIMBS[test["limb"]].in_language(language),
-        direction=PRIMARY_DIRECTIONS[test["direction"]].in_language(language),
     )
 
 

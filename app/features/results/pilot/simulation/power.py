@@ -7,7 +7,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from app.features.results.pilot.order import SETS, TARGET, numbers_around
 from app.features.results.pilot.simulation.plan import (
@@ -30,7 +30,8 @@ from app.features.results.pilot.simulation.power_record import (
 )
 from app.features.results.pilot.simulation.simulated_study import SimulatedStudy
 from app.platform.workers import end_with_parent
-from app.protocol import NO_NAMES, LoadedAssumptions, PrimaryNames, primary_names
+from app.protocol import NO_NAMES, LoadedAssumptions, PrimaryNames, PrimaryTest, primary_names
+from app.science.instruments import Instrument
 from app.science.pilot import PowerPoint, Results, power_point, smallest_sufficient
 
 
@@ -56,14 +57,16 @@ class Curve:
     """The power by number of participants, with all that it depends on.
 
     `unfinished`: chunks of other shards that are not in the record. `names`: what the study calls
-    what its test names by key; records do not have them. `missing`: the shards that are not in
-    it, as in 2/3, if whole ones are missing.
+    what its test names by key; records do not have them. `score_range`:
+    the lowest and the highest possible score, if its author states them. `missing`: the shards
+    that are not in it, as in 2/3, if whole ones are missing.
     """
 
     header: Mapping[str, Any]
     points: tuple[PowerPoint, ...]
     unfinished: int
     names: PrimaryNames = NO_NAMES
+    score_range: tuple[float, float] | None = None
     missing: tuple[str, ...] = ()
 
 
@@ -119,7 +122,18 @@ def simulate_power(
                 kept.add(chunk, tested)
             tell(Progress("power", len(own) - len(missing) + done, len(own)))
     names = primary_names(simulated.declared.primary, protocol, study.instruments)
-    return replace(curve_of(Record(header, results)), names=names)
+    score_range = _score_range(simulated.declared.primary, study.instruments)
+    return replace(curve_of(Record(header, results)), names=names, score_range=score_range)
+
+
+def _score_range(
+    primary: PrimaryTest, instruments: Mapping[str, Instrument]
+) -> tuple[float, float] | None:
+    instrument = instruments.get(primary.instrument or "")
+    for score in () if instrument is None else instrument.scores:
+        if score.key == primary.score and None not in (score.minimum, score.maximum):
+            return cast("tuple[float, float]", (score.minimum, score.maximum))
+    return None
 
 
 def merged_curve(paths: Sequence[Path]) -> Curve:
