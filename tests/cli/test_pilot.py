@@ -120,3 +120,27 @@ def test_records_of_different_pilots_are_not_mixed(tmp_path: Path) -> None:
     cohort.write_text('{"format": 1, "kind": "cohort"}\n{"number": 1}\n', encoding="utf-8")
     told = _COMMAND.refusal("power", _STUDY, *small, "--out", cohort)
     assert "it is the record of a cohort, and not of a power curve; name another file" in told
+
+
+def test_a_file_of_assumptions_to_copy_is_printed(tmp_path: Path) -> None:
+    """The product's file or an example is printed, and can be given again as it is."""
+    shipped = study_configs_dir() / "assumptions" / f"{_STUDY}.yaml"
+    assert _COMMAND.run("assumptions", _STUDY).stdout == shipped.read_text(encoding="utf-8")
+    own = tmp_path / "own.yaml"
+    own.write_text(_COMMAND.run("assumptions", "two-latencies-hand").stdout, encoding="utf-8")
+    small = ("--participants", "4", "--sets", "5", "--assumptions", own)
+    assert _COMMAND.run("power", "two-latencies-hand", *small).exit_code == 0
+
+
+def test_a_shipped_study_goes_by_its_key_too() -> None:
+    """What reports print can be typed again: the key, or the name of the file."""
+    by_key, by_name = (
+        _COMMAND.run("assumptions", name).stdout
+        for name in ("four-latencies", "four-latencies-williams")
+    )
+    assert by_key == by_name != ""
+
+
+def test_the_help_shows_a_study_in_place_of_a_command() -> None:
+    """The usage has `pilot STUDY`, the most frequent form."""
+    assert "STUDY | COMMAND" in _COMMAND.run("--help").stdout

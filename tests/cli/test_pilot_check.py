@@ -114,9 +114,16 @@ def test_a_scene_without_a_path_is_named(tmp_path: Path, end: str, found: int) -
     """A wall across the room leaves no way from the door to the boxes; a shorter one does."""
     room = tmp_path / "room.yaml"
     room.write_text(_ROOM.replace("END", end), encoding="utf-8")
-    problems = list(_paths(room))
+    problems = list(_paths(str(room)))
     assert [one.kind for one in problems] == ["scene_without_path"] * found
     assert all("'to the boxes' from 'door' to 'boxes'" in one.message for one in problems)
+
+
+def test_a_shipped_scene_goes_by_its_key() -> None:
+    """A scene that the product ships is found by its key, and another name says which there are."""
+    assert list(_paths("car-and-three-racks")) == []
+    with pytest.raises(ValueError, match=r"shipped with the product are .*car-and-three-racks"):
+        list(_paths("nowhere"))
 
 
 def test_an_invalid_file_is_refused_as_everywhere(tmp_path: Path) -> None:

@@ -9,14 +9,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from app.cli.pilot.inputs import of_file, read_study
+from app.cli.pilot.inputs import read_study
 from app.cli.pilot.output import told
 from app.features.results.pilot.simulation import Checked, Finding, check_study
-from app.protocol import ConfigError
 
 
-def carry_out_check(name: str, scene: Path | None, now: Callable[[str], None]) -> Checked:
-    """Check a study, and the scene of its walks if one is given.
+def carry_out_check(name: str, scene: str | None, now: Callable[[str], None]) -> Checked:
+    """Check a study, and the scene of its walks if one is given, by its file or a shipped key.
 
     Raises ValueError with every problem of an invalid file, OSError.
     """
@@ -61,17 +60,17 @@ def check_text(checked: Checked) -> str:
     return "\n".join(lines)
 
 
-def _paths(file: Path) -> Iterator[Finding]:
+def _paths(name: str) -> Iterator[Finding]:
     """Yield the walks of a scene for which the planner of the walking model finds no path."""
     # The planner loads the compiler, which no other check needs.
-    from app.adapters.walks import load_scene
+    from app.cli.walk.scenes import read_scene
     from app.science.walking.planning import LazyThetaPlanner
     from app.science.walking.scene import SceneError
 
-    try:
-        scene = load_scene(file.read_text(encoding="utf-8"))
-    except ConfigError as error:
-        raise of_file(file, error) from error
+    scene = read_scene(name)
+    if scene is None:
+        return
+    called = Path(name).name
     planner = LazyThetaPlanner(scene)
     for at, walk in enumerate(scene.paths):
         try:
@@ -79,7 +78,7 @@ def _paths(file: Path) -> Iterator[Finding]:
         except SceneError as error:
             yield Finding(
                 "scene_without_path",
-                f"{file.name}: paths[{at}]",
+                f"{called}: paths[{at}]",
                 f"Nobody can walk {walk.name!r} from {walk.start!r} to {walk.goal!r}: {error}",
                 f"Move the places or obstacles, or ask for less than {scene.clearance_m:g} m of "
                 "clearance_m.",
@@ -87,7 +86,7 @@ def _paths(file: Path) -> Iterator[Finding]:
     if not scene.paths:
         yield Finding(
             "scene_without_path",
-            f"{file.name}: paths",
+            f"{called}: paths",
             "The scene asks for no walk at all.",
             "List under paths the walks that people are asked to do, each from a place to a place.",
         )

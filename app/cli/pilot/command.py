@@ -26,7 +26,9 @@ class _StudyOrCommand(typer.core.TyperGroup):
 
 pilot = typer.Typer(
     cls=_StudyOrCommand,
-    help="Simulate a study before anybody takes part; all of it is marked simulated.",
+    help="Simulate a study before anybody takes part; all of it is marked simulated. "
+    "`pilot STUDY` simulates people in it, as `pilot cohort STUDY` does.",
+    subcommand_metavar="STUDY | COMMAND [ARGS]...",
     no_args_is_help=True,
 )
 _Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
@@ -137,7 +139,10 @@ def power(
 def check(
     study: Annotated[str, typer.Argument(help="Study file, or the name of a shipped one.")],
     scene: Annotated[
-        Path | None, typer.Option(help="Scene file of the study's walks, to look for paths.")
+        str | None,
+        typer.Option(
+            help="Scene of the study's walks, to look for paths: a file or a shipped key."
+        ),
     ] = None,
     as_json: _Json = False,
 ) -> None:
@@ -149,6 +154,18 @@ def check(
     print(json.dumps(check_json(checked), indent=2) if as_json else check_text(checked))
     if checked.findings:
         raise typer.Exit(INCOMPLETE)
+
+
+@pilot.command()
+def assumptions(
+    study: Annotated[str, typer.Argument(help="Study file, or the name of a shipped one.")],
+) -> None:
+    """Print a file of assumptions to copy: the product's for the study, or an example for it."""
+    from app.cli.pilot.inputs import assumptions_to_copy, read_study
+
+    with reported(ValueError, OSError):
+        text = assumptions_to_copy(read_study(study))
+    print(text, end="")
 
 
 @pilot.command()

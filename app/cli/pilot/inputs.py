@@ -4,6 +4,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.features.results.pilot.example import example_assumptions
 from app.features.results.pilot.simulation import AvatarKind, PilotStudy, Sharing
 from app.protocol import (
     ConfigError,
@@ -18,6 +19,7 @@ from app.science.reaching import FittedReaching
 
 MOST_WORKERS = 64
 _COUNTS = re.compile(r"\d+(,\d+)*")
+_KEY = re.compile(r"^key: *([\w-]+)", re.MULTILINE)
 _SHARD = re.compile(r"([1-9]\d*)/([1-9]\d*)")
 
 
@@ -58,7 +60,8 @@ def read_assumptions(given: Path | None, study: StudyFile) -> LoadedAssumptions:
     if given is None and not path.is_file():
         raise ValueError(
             f"nothing is known of how people would answer in {protocol.key!r}: write the "
-            "assumptions to a file, as docs/pilot.md describes, and give it with --assumptions"
+            "assumptions to a file, as docs/pilot.md describes, and give it with --assumptions; "
+            "`pilot assumptions STUDY` prints one to start from"
         )
     try:
         return load_assumptions(path.read_text(encoding="utf-8"), protocol, study.instruments)
@@ -70,6 +73,18 @@ def has_assumptions(given: Path | None, study: StudyFile) -> bool:
     """Return whether there are assumptions of a study, given or the product's."""
     key = study.study.protocol.key
     return given is not None or (study_configs_dir() / "assumptions" / f"{key}.yaml").is_file()
+
+
+def assumptions_to_copy(study: StudyFile) -> str:
+    """Return the product's assumptions for a study, else an example; raises ValueError, OSError."""
+    protocol = study.study.protocol
+    path = study_configs_dir() / "assumptions" / f"{protocol.key}.yaml"
+    if path.is_file():
+        return path.read_text(encoding="utf-8")
+    text = example_assumptions(protocol, study.instruments)
+    if text is None:
+        raise ValueError(f"no example can be made for {protocol.key!r}: see docs/pilot.md")
+    return text
 
 
 def read_counts(given: list[str]) -> tuple[int, ...]:
@@ -112,13 +127,13 @@ def require_sharing(sharing: Sharing, out: Path | None) -> None:
 
 
 def is_shipped(name: str) -> bool:
-    """Return whether a name is that of a shipped study or template."""
-    return name in _shipped()
+    """Return whether a name is the file's name or the key of a shipped study or template."""
+    return name in _named()
 
 
 def _study_path(name: str) -> Path:
     shipped = _shipped()
-    path = shipped.get(name, Path(name))
+    path = _named().get(name, Path(name))
     if not path.is_file():
         raise ValueError(
             f"there is no study {name!r}, and no such file; there are: {', '.join(sorted(shipped))}"
@@ -128,9 +143,19 @@ def _study_path(name: str) -> Path:
 
 def _shipped() -> dict[str, Path]:
     root = study_configs_dir()
-    return {
-        file.stem: file for file in (*root.glob("*.yaml"), *(root / "templates").glob("*.yaml"))
-    }
+    files = [*root.glob("*.yaml"), *(root / "templates").glob("*.yaml")]
+    return {file.stem: file for file in files}
+
+
+def _named() -> dict[str, Path]:
+    """Return the shipped studies by file name, and by the key that reports print."""
+    shipped = _shipped()
+    return {_key_of(file): file for file in shipped.values()} | shipped
+
+
+def _key_of(file: Path) -> str:
+    found = _KEY.search(file.read_text(encoding="utf-8"))
+    return file.stem if found is None else found[1]
 
 
 def _instruments(folder: Path) -> dict[str, LoadedInstrument]:
