@@ -10,7 +10,8 @@ import type { JSX, ReactNode } from "react";
 import { useTexts } from "../i18n";
 import { CopyButton } from "../pages/study/ResultCard";
 import { NumbersTable } from "../ui/tables";
-import { latencyFigure, peopleIn } from "./figures";
+import { hasInterval, latencyFigure, peopleIn } from "./figures";
+import { interval } from "./intervals";
 import classes from "./Pilot.module.css";
 import { PowerCard } from "./PowerCard";
 import type { CohortFigures, Pilot } from "./pilots";
@@ -50,6 +51,8 @@ function Cohort({ pilot, figures }: CohortProps): JSX.Element {
                 : "pilot.facts.length.value",
               {
                 minutes: number(figures.session_min, language, 0),
+                planned:
+                  figures.planned_min == null ? "–" : number(figures.planned_min, language, 0),
                 back: number(figures.walk_back_min, language, 1),
               },
             )}
@@ -142,12 +145,14 @@ const idleWords = (
 ) => ({ without, people, limb: limbOf(limb), latency: number(latency_ms, language, 0) });
 
 function Phases({ figures }: FiguresProps): JSX.Element {
-  const { t, language } = useTexts();
+  const texts = useTexts();
+  const { t, language } = texts;
   const limb = useLimbs();
   const shown = (value: number, count = 1) => decimals(value, language, count);
   return (
     <Card title={t("pilot.phases")} note={t("pilot.phases.note")}>
       <NumbersTable
+        className={classes.narrow}
         label={t("pilot.phases")}
         columns={[
           t("pilot.col.limb"),
@@ -166,7 +171,7 @@ function Phases({ figures }: FiguresProps): JSX.Element {
           number(one.latency_ms, language, 0),
           String(one.people),
           `${shown(one.completions, 2)} (${shown(one.completions_sd, 2)})`,
-          shareOf(one, (share) => shown(100 * share, 0)),
+          shareOf(texts, one),
           shown(one.side_contacts),
           shown(one.contact_time_s),
           shown(one.out_of_order, 2),
@@ -185,6 +190,7 @@ function Phases({ figures }: FiguresProps): JSX.Element {
               share: t("pilot.axis.share"),
               published: t("pilot.published"),
               limb,
+              language,
             })}
             label={t("pilot.phases.latency", { people: peopleIn(figures.phases) })}
             watermark={t("simulated.watermark")}
@@ -205,13 +211,21 @@ function Phases({ figures }: FiguresProps): JSX.Element {
   );
 }
 
-/** Completions in per cent of those at the lowest latency, with the interval if it is known. */
-function shareOf(phase: CohortFigures["phases"][number], percent: (share: number) => string) {
-  const { share_of_lowest, share_low, share_high } = phase;
+/** Completions in per cent of those at the lowest latency, with the interval or why there is none. */
+function shareOf(
+  { t, language }: ReturnType<typeof useTexts>,
+  phase: CohortFigures["phases"][number],
+): string {
+  const { share_of_lowest, share_low, share_high, people } = phase;
   if (share_of_lowest === null) return "–";
-  return share_low == null || share_high == null
-    ? percent(share_of_lowest)
-    : `${percent(share_of_lowest)} [${percent(share_low)}, ${percent(share_high)}]`;
+  const percent = (share: number) => decimals(100 * share, language, 0);
+  const mean = percent(share_of_lowest);
+  if (people === 1) return `${mean} (${t("pilot.noInterval.one")})`;
+  // Pilots of earlier releases have none.
+  if (share_low == null || share_high == null) return mean;
+  return hasInterval(phase)
+    ? `${mean} ${interval(percent(share_low), percent(share_high), language)}`
+    : `${mean} (${t("pilot.noInterval.alike")})`;
 }
 
 function Changes({ figures }: FiguresProps): JSX.Element | null {
@@ -232,7 +246,9 @@ function Changes({ figures }: FiguresProps): JSX.Element | null {
         rows={figures.changes.map((one) => [
           limb(one.limb),
           t(`pilot.measure.${one.measure}`),
-          `${shown(one.mean)} [${shown(one.low)}, ${shown(one.high)}]`,
+          one.low < one.high
+            ? `${shown(one.mean)} ${interval(shown(one.low), shown(one.high), language)}`
+            : `${shown(one.mean)} (${t("pilot.noInterval.alike")})`,
           String(one.people),
         ])}
       />

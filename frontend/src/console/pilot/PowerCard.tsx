@@ -8,6 +8,8 @@ import { useTexts } from "../i18n";
 import { measureWords, primaryWords } from "../preregistration/primaryWords";
 import { NumbersTable } from "../ui/tables";
 import { isNeverTested, powerFigure } from "./figures";
+import { between, interval, listed } from "./intervals";
+import { largerThan, lostIn } from "./numbers";
 import classes from "./Pilot.module.css";
 import type { PowerFigures, PowerPoint } from "./pilots";
 
@@ -16,6 +18,12 @@ export function PowerCard({ power }: { readonly power: PowerFigures }): JSX.Elem
   const { t, language } = texts;
   const { test, names } = power;
   const never = power.power.filter(isNeverTested).map(({ n }) => n);
+  const share = (value: number) => decimals(value, language, 3);
+  const target = number(power.target, language, 2);
+  const largest = power.power.at(-1);
+  const more = largest === undefined ? [] : largerThan(largest.n);
+  const lost = lostIn(power.power);
+  const ends = power.score_range ?? null;
   return (
     <Paper>
       <Title order={3}>{t("pilot.curve")}</Title>
@@ -25,13 +33,26 @@ export function PowerCard({ power }: { readonly power: PowerFigures }): JSX.Elem
         {t("pilot.curve.alpha", { alpha: number(power.alpha, language, 3) })}
       </p>
       <p className={classes.sentence}>
-        {power.smallest_sufficient_n === null
-          ? t("pilot.curve.none", { target: power.target, planned: power.planned_n })
-          : t("pilot.curve.smallest", {
-              n: power.smallest_sufficient_n,
-              target: power.target,
+        {power.smallest_sufficient_n !== null &&
+          t("pilot.curve.smallest", {
+            n: power.smallest_sufficient_n,
+            target,
+            planned: power.planned_n,
+          })}
+        {power.smallest_sufficient_n === null && largest !== undefined && (
+          <>
+            {t("pilot.curve.none", {
+              target,
               planned: power.planned_n,
-            })}
+              largest: largest.n,
+              power: share(largest.power),
+              low: share(largest.low),
+              and: between(language),
+              high: share(largest.high),
+            })}{" "}
+            {more.length > 0 && t("pilot.curve.more", { numbers: more.join(", ") })}
+          </>
+        )}
       </p>
       {never.length > 0 && (
         <Notice tone="warn">{t("pilot.curve.never", { numbers: never.join(", ") })}</Notice>
@@ -45,6 +66,7 @@ export function PowerCard({ power }: { readonly power: PowerFigures }): JSX.Elem
             level: t("pilot.series.level"),
             target: t("pilot.series.target"),
             alpha: t("pilot.series.alpha"),
+            language,
           })}
           label={t("pilot.curve")}
           watermark={t("simulated.watermark")}
@@ -65,12 +87,22 @@ export function PowerCard({ power }: { readonly power: PowerFigures }): JSX.Elem
         ]}
         rows={power.power.map((one) => cells(one, language))}
       />
-      <p className={classes.soft}>{t("pilot.curve.note", { sets: power.sets })}</p>
+      {lost > 0 && <p className={classes.soft}>{t("pilot.curve.lost", { share: lost })}</p>}
+      <p className={classes.soft}>
+        {t("pilot.curve.note", { sets: number(power.sets, language, 0) })}
+      </p>
       <h3 className={classes.small}>{t("pilot.assumed")}</h3>
       <p className={classes.soft}>
         {t("pilot.assumed.difference", {
           difference: number(power.assumed_difference, language, 3),
           measure: measureWords(texts, test, names),
+          range:
+            ends === null
+              ? ""
+              : t("pilot.curve.range", {
+                  low: number(ends[0], language, 2),
+                  high: number(ends[1], language, 2),
+                }),
         })}
       </p>
       <NumbersTable
@@ -83,7 +115,7 @@ export function PowerCard({ power }: { readonly power: PowerFigures }): JSX.Elem
         ]}
         rows={power.assumptions.map(({ name, value, unit, source }) => [
           name,
-          [value].flat().join(", "),
+          listed([value].flat(), language, (one) => number(one, language, 6)),
           unit,
           source,
         ])}
@@ -96,7 +128,7 @@ export function PowerCard({ power }: { readonly power: PowerFigures }): JSX.Elem
 function cells(one: PowerPoint, language: string): readonly string[] {
   const share = (value: number) => decimals(value, language, 3);
   const band = (value: number, low: number, high: number) =>
-    isNeverTested(one) ? "–" : `${share(value)} [${share(low)}, ${share(high)}]`;
+    isNeverTested(one) ? "–" : `${share(value)} ${interval(share(low), share(high), language)}`;
   const error = (value: number | null) => (value === null ? "–" : decimals(value, language, 2));
   return [
     String(one.n),

@@ -16,6 +16,7 @@ export interface PowerWords {
   readonly level: string;
   readonly target: string;
   readonly alpha: string;
+  readonly language: string;
 }
 
 /** Whether the test could be computed on no data set, so that 0 would be no finding. */
@@ -46,7 +47,7 @@ export function powerFigure(curve: PowerFigures, words: PowerWords): object {
       flat(ends, curve.target, words.target, "dot"),
       flat(ends, curve.alpha, words.alpha, "dashdot"),
     ],
-    layout: layout(words.n, words.share, [0, 1.02]),
+    layout: layout(words, words.n, [0, 1.02]),
   };
 }
 
@@ -55,6 +56,7 @@ export interface LatencyWords {
   readonly share: string;
   readonly published: string;
   readonly limb: (limb: string) => string;
+  readonly language: string;
 }
 
 /** Completions by latency as a share of those at the lowest, beside the published curve. */
@@ -86,19 +88,20 @@ export function latencyFigure(figures: CohortFigures, words: LatencyWords): obje
         marker: { symbol: "diamond" },
       },
     ],
-    layout: layout(words.latency, words.share),
+    layout: layout(words, words.latency),
   };
 }
 
-/** The intervals of the means, if they are known: not of one person, nor of earlier releases. */
+/** The intervals of the means where there are any: not of one person, nor where all are alike. */
 const intervals = (phases: CohortFigures["phases"], color: string): object => {
-  const ends = phases.map(({ share_of_lowest, share_low, share_high }) => {
-    const at = share_of_lowest ?? 0;
-    return [(share_high ?? at) - at, at - (share_low ?? at)] as const;
+  const ends = phases.map((phase) => {
+    const at = phase.share_of_lowest ?? 0;
+    return hasInterval(phase)
+      ? ([(phase.share_high ?? at) - at, at - (phase.share_low ?? at)] as const)
+      : ([0, 0] as const);
   });
-  return phases.some(({ share_low }) => share_low == null)
-    ? {}
-    : {
+  return phases.some(hasInterval)
+    ? {
         error_y: {
           type: "data",
           symmetric: false,
@@ -106,8 +109,16 @@ const intervals = (phases: CohortFigures["phases"], color: string): object => {
           arrayminus: ends.map(([, below]) => 100 * below),
           color,
         },
-      };
+      }
+    : {};
 };
+
+/** Whether the mean of a phase has an interval that says how far it can be trusted. */
+export const hasInterval = ({
+  share_low,
+  share_high,
+}: Pick<CohortFigures["phases"][number], "share_low" | "share_high">): boolean =>
+  share_low != null && share_high != null && share_low < share_high;
 
 /** How many people the means are of: one number, or the fewest and the most. */
 export function peopleIn(phases: CohortFigures["phases"]): string {
@@ -149,8 +160,15 @@ const flat = (x: readonly number[], at: number, name: string, dash: string) => (
   line: { color: GREY, width: 1, dash },
 });
 
-const layout = (x: string, y: string, range?: readonly number[]) => ({
+interface AxisWords {
+  readonly share: string;
+  readonly language: string;
+}
+
+const layout = ({ share: y, language }: AxisWords, x: string, range?: readonly number[]) => ({
   height: HEIGHT,
+  // The decimal sign, then the one between thousands.
+  separators: language === "de" ? ",." : ".,",
   xaxis: { title: { text: x } },
   yaxis: { title: { text: y }, rangemode: "tozero", ...(range === undefined ? {} : { range }) },
   legend: { orientation: "h", y: 1.25 },

@@ -7,7 +7,7 @@ export const pilotEn = {
     "Everybody in a pilot is simulated. Its figures follow from the protocol and from the assumptions below, say nothing about real people, and enter no table of the study. Deleting a pilot deletes all of it.",
   "pilot.cohort": "Simulated people",
   "pilot.cohort.lead": "They do every task phase of a visit, in the orders of the ledger.",
-  "pilot.cohort.n": "People",
+  "pilot.cohort.n": "People (1 to 1000)",
   "pilot.seed": "Seed",
   "pilot.seed.hint": "The same seed gives the same figures.",
   "pilot.avatar": "Avatar",
@@ -22,8 +22,8 @@ export const pilotEn = {
   "pilot.power.n.hint": "As in 6, 9, 12",
   "pilot.power.n.most": "At most {{most}}, the slots of the closed ledger.",
   "pilot.power.n.wrong": "Give numbers from 2 to 1000, as in 6, 9, 12.",
-  "pilot.power.sets": "Data sets each",
-  "pilot.power.target": "Target power",
+  "pilot.power.sets": "Data sets each (50 to 10,000)",
+  "pilot.power.target": "Target power (0.01 to 0.99)",
   "pilot.start": "Start",
   "pilot.assumptions": "What is assumed of people's answers",
   "pilot.assumptions.hint":
@@ -67,7 +67,7 @@ export const pilotEn = {
   "pilot.stage.check": "Checking reach and times: {{done}} of {{total}} bodies",
   "pilot.stage.people": "Simulating people: {{done}} of {{total}}",
   "pilot.stage.power": "Simulating data sets: {{done}} of {{total}} parts",
-  "pilot.stage.left": "about {{time}} left in this part",
+  "pilot.stage.left": "about {{time}} until this step is done",
   "pilot.progress": "Progress of the pilot",
   "pilot.stop": "Stop",
   "pilot.resume": "Resume",
@@ -83,14 +83,15 @@ export const pilotEn = {
   "pilot.course": "The pilot that is shown",
   "pilot.facts.length": "Length of a visit",
   "pilot.facts.length.value":
-    "≈ {{minutes}} min, of which {{back}} min are walks back between tasks",
-  "pilot.facts.length.noWalks": "≈ {{minutes}} min",
+    "≈ {{minutes}} min, not simulated as a whole: {{planned}} min are set by the protocol, {{back}} min are simulated walks back between tasks, and the rest is an estimate of forms, texts and steps by hand. Breaks and putting on the equipment are not included.",
+  "pilot.facts.length.noWalks":
+    "≈ {{minutes}} min, not simulated: {{planned}} min are set by the protocol, and the rest is an estimate of forms, texts and steps by hand. Breaks and putting on the equipment are not included.",
   "pilot.facts.storage": "Movement of one person",
   "pilot.facts.storage.value": "≈ {{size}} MB",
   "pilot.facts.failures": "Visits that did not come to their end",
   "pilot.facts.failures.value": "{{failures}} of {{people}}",
   "pilot.facts.avatar": "Avatar",
-  "pilot.facts.time": "Processor time of the last run",
+  "pilot.facts.time": "Processor time since the start or the last resume",
   "pilot.facts.hash": "SHA-256 of the record",
   "pilot.findings": "What would break the study",
   "pilot.findings.none": "The check found nothing that would break the study.",
@@ -112,10 +113,10 @@ export const pilotEn = {
   "pilot.kind.never_significant": "Never significant",
   "pilot.phases": "What they did",
   "pilot.phases.note":
-    "Means over people. A task starts again until the time is up, so there is no ceiling; “none” is the floor: the share who complete no task. In brackets: Student’s t interval of 95 %.",
+    "Means per person and phase. A task starts again until the time is up, so there is no ceiling; “no task” is the floor: the share who complete none. Red time is summed over the sides that are red, so it can be longer than the phase. In brackets: Student’s t interval of 95 % of the mean; there is none where everybody did alike, or of one person.",
   "pilot.phases.latency": "Completions by latency (n = {{people}} simulated people)",
   "pilot.phases.drawn":
-    "Lines: mean completions as a share of those at the lowest added latency, which counts as exact, with Student’s t interval of 95 % of each mean. Diamonds: the performance of ten people in another task, by latency from end to end (Waltemate et al. 2016). The two have different axes of latency and different tasks, so compare their shape at most.",
+    "Lines: mean completions in per cent of the mean at the lowest added latency. The bar of each latency, also of the lowest, is Student’s t interval of 95 % of its own mean, as the table has it; that the mean at the lowest latency is uncertain, too, is not in the bars of the others. Diamonds: the performance of ten people in another task, by latency from end to end (Waltemate et al. 2016). The two have different axes of latency and different tasks, so compare their shape at most.",
   "pilot.phases.limits":
     "Known limitation: simulated people do not get used to a latency within a phase. Do not rely on completions at long latencies.",
   "pilot.phases.limits.contacts":
@@ -126,23 +127,24 @@ export const pilotEn = {
   "pilot.col.latency": "Added latency (ms)",
   "pilot.col.people": "People",
   "pilot.col.tasks": "Tasks (SD)",
-  "pilot.col.share": "Of lowest (%)",
+  "pilot.col.share": "% of lowest",
   "pilot.col.sides": "Sides touched",
-  "pilot.col.red": "Red (s)",
+  "pilot.col.red": "Red (s, over sides)",
   "pilot.col.early": "Early touches",
   "pilot.col.back": "Walks back (s)",
-  "pilot.col.floor": "None (%)",
+  "pilot.col.floor": "No task (%)",
   "pilot.axis.latency": "Added latency (ms); diamonds: latency from end to end",
   "pilot.axis.share": "Completions (% of lowest);<br>diamonds: another task (%)",
   "pilot.published": "published, end to end, another task (Waltemate et al. 2016)",
   "pilot.changes": "Change from the lowest to the highest latency",
-  "pilot.changes.note": "Paired means with a t interval of 95 %.",
+  "pilot.changes.note":
+    "Paired means per person and phase, with a t interval of 95 %; red time is summed over sides.",
   "pilot.col.measure": "Measure",
   "pilot.col.change": "Change [95 %]",
   "pilot.col.n": "n",
   "pilot.measure.completions": "Tasks",
   "pilot.measure.side_contacts": "Sides touched",
-  "pilot.measure.contact_time_s": "Red (s)",
+  "pilot.measure.contact_time_s": "Red (s, over sides)",
   "pilot.measure.out_of_order": "Early touches",
   "pilot.reach": "Reach of short and tall bodies",
   "pilot.reach.note":
@@ -162,11 +164,11 @@ export const pilotEn = {
   "pilot.curve.smallest":
     "{{n}} is the smallest number whose lower bound reaches {{target}}; {{planned}} are planned.",
   "pilot.curve.none":
-    "The lower bound reaches {{target}} with none of these numbers; {{planned}} are planned.",
+    "The lower bound reaches {{target}} with none of these numbers; {{planned}} are planned. At the largest, n = {{largest}}, the power is {{power}} [{{low}}{{and}}{{high}}].",
   "pilot.curve.never":
     "With n of {{numbers}} no data set could be analysed: too few participants reach the test. Look at the drop-out that is assumed.",
   "pilot.curve.note":
-    "Share of {{sets}} simulated data sets each, with Clopper-Pearson intervals of 95 %. The level is the same share if no condition had an effect; a failed fit is no rejection.",
+    "Share of {{sets}} simulated data sets each, with Clopper-Pearson intervals of 95 %. Level: the same share if no condition had an effect. Type S: of the significant results, the share with the wrong sign. Type M: how many times too large the significant differences are on average. Failed: data sets, with and without the effect, on which the test could not be computed; they count as not significant.",
   "pilot.axis.n": "Participants who start",
   "pilot.axis.significant": "Share of significant tests",
   "pilot.series.power": "power",
@@ -185,9 +187,22 @@ export const pilotEn = {
   "pilot.col.unit": "Unit",
   "pilot.col.source": "Source",
   "pilot.assumed.difference":
-    "Assumed difference, longest against shortest latency: {{difference}} ({{measure}}).",
+    "Assumed difference, longest against shortest latency: {{difference}} ({{measure}}{{range}}).",
   "pilot.walksBack":
     "This includes {{back}} min of walks back, as a pilot of this version says (simulated).",
+  "pilot.range.whole": "Give a whole number from {{low}} to {{high}}.",
+  "pilot.range.share": "Give a share from 0.01 to 0.99: 0.8 stands for 80 %.",
+  "pilot.estimate":
+    "Roughly {{time}} on a processor like the one that was measured, if nobody is in a session; a slow or busy one takes several times as long.",
+  "pilot.same":
+    "There is this very pilot already. The same order gives the same figures, to the last digit; for others, choose another seed.",
+  "pilot.same.show": "Show it",
+  "pilot.noInterval.alike": "no interval: all alike",
+  "pilot.noInterval.one": "no interval: one person",
+  "pilot.curve.more": "Try larger numbers, such as {{numbers}}, and look at what is assumed.",
+  "pilot.curve.lost":
+    "{{share}} % of those who start are not in the test (column “In test”): they drop out, or are excluded for a technical reason or by a declared rule, as assumed below.",
+  "pilot.curve.range": ", possible are {{low}} to {{high}}",
 };
 
 export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
@@ -199,7 +214,7 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.cohort": "Simulierte Menschen",
   "pilot.cohort.lead":
     "Sie machen jede Aufgabenphase eines Termins, in den Reihenfolgen des Zuteilungsplans.",
-  "pilot.cohort.n": "Personen",
+  "pilot.cohort.n": "Personen (1 bis 1000)",
   "pilot.seed": "Startwert",
   "pilot.seed.hint": "Derselbe Startwert ergibt dieselben Zahlen.",
   "pilot.avatar": "Avatar",
@@ -214,8 +229,8 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.power.n.hint": "Wie 6, 9, 12",
   "pilot.power.n.most": "Höchstens {{most}}, die Plätze des geschlossenen Zuteilungsplans.",
   "pilot.power.n.wrong": "Zahlen von 2 bis 1000 angeben, wie 6, 9, 12.",
-  "pilot.power.sets": "Datensätze je Zahl",
-  "pilot.power.target": "Gewünschte Teststärke",
+  "pilot.power.sets": "Datensätze je Zahl (50 bis 10.000)",
+  "pilot.power.target": "Gewünschte Teststärke (0,01 bis 0,99)",
   "pilot.start": "Starten",
   "pilot.assumptions": "Was von den Antworten angenommen wird",
   "pilot.assumptions.hint":
@@ -259,7 +274,7 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.stage.check": "Prüft Reichweite und Zeiten: {{done}} von {{total}} Körpern",
   "pilot.stage.people": "Simuliert Menschen: {{done}} von {{total}}",
   "pilot.stage.power": "Simuliert Datensätze: {{done}} von {{total}} Teilen",
-  "pilot.stage.left": "in diesem Teil noch etwa {{time}}",
+  "pilot.stage.left": "dieser Schritt dauert noch etwa {{time}}",
   "pilot.progress": "Fortschritt der Pilotrechnung",
   "pilot.stop": "Anhalten",
   "pilot.resume": "Fortsetzen",
@@ -275,14 +290,15 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.course": "Die gezeigte Pilotrechnung",
   "pilot.facts.length": "Dauer eines Termins",
   "pilot.facts.length.value":
-    "≈ {{minutes}} min, davon {{back}} min Rückwege zwischen den Aufgaben",
-  "pilot.facts.length.noWalks": "≈ {{minutes}} min",
+    "≈ {{minutes}} min, nicht als Ganzes simuliert: {{planned}} min gibt das Studienprotokoll vor, {{back}} min sind simulierte Rückwege zwischen den Aufgaben, der Rest ist für Fragebögen, Texte und Schritte von Hand geschätzt. Pausen und das Anlegen der Ausrüstung sind nicht enthalten.",
+  "pilot.facts.length.noWalks":
+    "≈ {{minutes}} min, nicht simuliert: {{planned}} min gibt das Studienprotokoll vor, der Rest ist für Fragebögen, Texte und Schritte von Hand geschätzt. Pausen und das Anlegen der Ausrüstung sind nicht enthalten.",
   "pilot.facts.storage": "Bewegung einer Person",
   "pilot.facts.storage.value": "≈ {{size}} MB",
   "pilot.facts.failures": "Termine, die nicht zu Ende kamen",
   "pilot.facts.failures.value": "{{failures}} von {{people}}",
   "pilot.facts.avatar": "Avatar",
-  "pilot.facts.time": "Prozessorzeit des letzten Laufs",
+  "pilot.facts.time": "Prozessorzeit seit dem Start oder dem letzten Fortsetzen",
   "pilot.facts.hash": "SHA-256 der Aufzeichnung",
   "pilot.findings": "Woran die Studie scheitern würde",
   "pilot.findings.none": "Die Prüfung hat nichts gefunden, woran die Studie scheitern würde.",
@@ -298,48 +314,48 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.facts.idle.value": "{{without}} von {{people}} ({{limb}}, {{latency}} ms)",
   "pilot.kind.out_of_reach": "Außer Reichweite",
   "pilot.kind.phase_too_short": "Phase zu kurz",
-  "pilot.kind.latency_over_buffer": "Verzögerung zu lang",
+  "pilot.kind.latency_over_buffer": "Latenz zu lang",
   "pilot.kind.unbalanced_orders": "Unausgewogene Reihenfolgen",
   "pilot.kind.scene_without_path": "Szene ohne Weg",
   "pilot.kind.never_significant": "Nie signifikant",
   "pilot.phases": "Was sie gemacht haben",
   "pilot.phases.note":
-    "Mittelwerte über Personen. Eine Aufgabe beginnt von vorn, bis die Zeit um ist, eine Decke gibt es daher nicht; „keine“ ist der Boden: der Anteil, der keine Aufgabe schafft. In Klammern: t-Intervall von 95 %.",
-  "pilot.phases.latency":
-    "Geschaffte Aufgaben nach Verzögerung (n = {{people}} simulierte Menschen)",
+    "Mittelwerte je Person und Phase. Eine Aufgabe beginnt von vorn, bis die Zeit um ist, eine Decke gibt es daher nicht; „keine Aufgabe“ ist der Boden: der Anteil, der keine schafft. Rote Zeit ist über die roten Seiten summiert und kann daher länger als die Phase sein. In Klammern: t-Intervall von 95 % des Mittelwerts; es gibt keines, wo alle gleich viel schaffen, und keines für eine einzige Person.",
+  "pilot.phases.latency": "Geschaffte Aufgaben nach Latenz (n = {{people}} simulierte Menschen)",
   "pilot.phases.drawn":
-    "Linien: im Mittel geschaffte Aufgaben als Anteil derer bei der kürzesten zusätzlichen Verzögerung, die als genau gilt, mit dem t-Intervall von 95 % jedes Mittelwerts. Rauten: die Leistung von zehn Menschen in einer anderen Aufgabe, nach Verzögerung von Ende zu Ende (Waltemate et al. 2016). Verzögerung und Aufgabe sind verschieden gemessen, vergleichbar ist also höchstens der Verlauf.",
+    "Linien: im Mittel geschaffte Aufgaben in Prozent des Mittels bei der kürzesten zusätzlichen Latenz. Der Balken jeder Latenz, auch der kürzesten, ist das t-Intervall von 95 % ihres eigenen Mittelwerts, wie in der Tabelle; dass auch das Mittel bei der kürzesten unsicher ist, steckt nicht in den Balken der anderen. Rauten: die Leistung von zehn Menschen in einer anderen Aufgabe, nach Latenz von Ende zu Ende (Waltemate et al. 2016). Latenz und Aufgabe sind verschieden gemessen, vergleichbar ist also höchstens der Verlauf.",
   "pilot.phases.limits":
-    "Bekannte Grenze: Simulierte Menschen gewöhnen sich in einer Phase nicht an die Verzögerung. Aufgaben bei langen Verzögerungen sind daraus nicht abzulesen.",
+    "Bekannte Grenze: Simulierte Menschen gewöhnen sich in einer Phase nicht an die Latenz. Aufgaben bei langen Latenzen sind daraus nicht abzulesen.",
   "pilot.phases.limits.contacts":
-    "Bekannte Grenzen: Simulierte Menschen gewöhnen sich in einer Phase nicht an die Verzögerung, und mit diesem Avatar bleiben sie an festen Kanten hängen. Aufgaben bei langen Verzögerungen sind daraus nicht abzulesen.",
+    "Bekannte Grenzen: Simulierte Menschen gewöhnen sich in einer Phase nicht an die Latenz, und mit diesem Avatar bleiben sie an festen Kanten hängen. Aufgaben bei langen Latenzen sind daraus nicht abzulesen.",
   "pilot.limb.hand": "Hand",
   "pilot.limb.foot": "Fuß",
-  "pilot.col.limb": "Glied",
-  "pilot.col.latency": "Zusätzliche Verzögerung (ms)",
+  "pilot.col.limb": "Hand oder Fuß",
+  "pilot.col.latency": "Zusätzliche Latenz (ms)",
   "pilot.col.people": "Personen",
   "pilot.col.tasks": "Aufgaben (SD)",
-  "pilot.col.share": "Von der kürzesten (%)",
+  "pilot.col.share": "% der kürzesten",
   "pilot.col.sides": "Berührte Seiten",
-  "pilot.col.red": "Rot (s)",
-  "pilot.col.early": "Zu frühe Berührungen",
+  "pilot.col.red": "Rot (s, über Seiten)",
+  "pilot.col.early": "Zu früh berührt",
   "pilot.col.back": "Rückwege (s)",
-  "pilot.col.floor": "Keine (%)",
-  "pilot.axis.latency": "Zusätzliche Verzögerung (ms); Rauten: von Ende zu Ende",
+  "pilot.col.floor": "Keine Aufgabe (%)",
+  "pilot.axis.latency": "Zusätzliche Latenz (ms); Rauten: von Ende zu Ende",
   "pilot.axis.share": "Aufgaben (% der kürzesten);<br>Rauten: andere Aufgabe (%)",
   "pilot.published": "veröffentlicht, von Ende zu Ende, andere Aufgabe (Waltemate et al. 2016)",
-  "pilot.changes": "Änderung von der kürzesten zur längsten Verzögerung",
-  "pilot.changes.note": "Gepaarte Mittelwerte mit t-Intervall von 95 %.",
+  "pilot.changes": "Änderung von der kürzesten zur längsten Latenz",
+  "pilot.changes.note":
+    "Gepaarte Mittelwerte je Person und Phase mit t-Intervall von 95 %; rote Zeit ist über die Seiten summiert.",
   "pilot.col.measure": "Maß",
   "pilot.col.change": "Änderung [95 %]",
   "pilot.col.n": "n",
   "pilot.measure.completions": "Aufgaben",
   "pilot.measure.side_contacts": "Berührte Seiten",
-  "pilot.measure.contact_time_s": "Rot (s)",
-  "pilot.measure.out_of_order": "Zu frühe Berührungen",
+  "pilot.measure.contact_time_s": "Rot (s, über Seiten)",
+  "pilot.measure.out_of_order": "Zu früh berührt",
   "pilot.reach": "Reichweite kleiner und großer Körper",
   "pilot.reach.note":
-    "Die erste Aufgabe einer langsamen Person, die nie danebengreift, bei der längsten Verzögerung. Körpergrößen: 5. Perzentil der Frauen und 95. der Männer (Huston 2009). Tempo und Reaktionen sind angenommen. Kanten der Kästen halten hier niemanden auf, mit ihnen dauert es länger oder gelingt nicht.",
+    "Die erste Aufgabe einer langsamen Person, die nie danebengreift, bei der längsten Latenz. Körpergrößen: 5. Perzentil der Frauen und 95. der Männer (Huston 2009). Tempo und Reaktionen sind angenommen. Kanten der Kästen halten hier niemanden auf, mit ihnen dauert es länger oder gelingt nicht.",
   "pilot.col.hand": "Seite",
   "pilot.hand.left": "links",
   "pilot.hand.right": "rechts",
@@ -355,11 +371,11 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.curve.smallest":
     "{{n}} ist die kleinste Zahl, deren untere Grenze {{target}} erreicht; geplant sind {{planned}}.",
   "pilot.curve.none":
-    "Bei keiner dieser Zahlen erreicht die untere Grenze {{target}}; geplant sind {{planned}}.",
+    "Bei keiner dieser Zahlen erreicht die untere Grenze {{target}}; geplant sind {{planned}}. Bei der größten, n = {{largest}}, ist die Teststärke {{power}} [{{low}}{{and}}{{high}}].",
   "pilot.curve.never":
     "Mit n von {{numbers}} ließ sich kein Datensatz auswerten: Zu wenige Teilnehmende kommen in den Test. Der angenommene Abbruch ist einen Blick wert.",
   "pilot.curve.note":
-    "Anteil von je {{sets}} simulierten Datensätzen, mit Clopper-Pearson-Intervallen von 95 %. Das Niveau ist derselbe Anteil, wenn keine Bedingung wirkte; ein gescheiterter Test ist keine Ablehnung.",
+    "Anteil von je {{sets}} simulierten Datensätzen, mit Clopper-Pearson-Intervallen von 95 %. Niveau: derselbe Anteil, wenn keine Bedingung wirkte. Typ S: Anteil der signifikanten Ergebnisse mit falschem Vorzeichen. Typ M: um welchen Faktor die signifikanten Unterschiede im Mittel zu groß sind. Gescheitert: Datensätze, mit und ohne Wirkung, auf denen sich der Test nicht rechnen ließ; sie zählen als nicht signifikant.",
   "pilot.axis.n": "Teilnehmende, die beginnen",
   "pilot.axis.significant": "Anteil signifikanter Tests",
   "pilot.series.power": "Teststärke",
@@ -378,7 +394,21 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.col.unit": "Einheit",
   "pilot.col.source": "Quelle",
   "pilot.assumed.difference":
-    "Angenommener Unterschied, längste gegen kürzeste Verzögerung: {{difference}} ({{measure}}).",
+    "Angenommener Unterschied, längste gegen kürzeste Latenz: {{difference}} ({{measure}}{{range}}).",
   "pilot.walksBack":
     "Darin sind {{back}} min Rückwege, wie eine Pilotrechnung dieser Version sagt (simuliert).",
+  "pilot.range.whole": "Eine ganze Zahl von {{low}} bis {{high}} angeben.",
+  "pilot.range.share": "Einen Anteil von 0,01 bis 0,99 angeben: 0,8 steht für 80 %.",
+  "pilot.estimate":
+    "Grob {{time}} auf einem Prozessor wie dem gemessenen, wenn niemand in einer Sitzung ist; ein langsamer oder beschäftigter braucht ein Mehrfaches.",
+  "pilot.same":
+    "Genau diese Pilotrechnung gibt es schon. Derselbe Auftrag ergibt dieselben Zahlen, bis zur letzten Stelle; für andere einen anderen Startwert wählen.",
+  "pilot.same.show": "Zeigen",
+  "pilot.noInterval.alike": "kein Intervall: alle gleich",
+  "pilot.noInterval.one": "kein Intervall: eine Person",
+  "pilot.curve.more":
+    "Als Nächstes größere Zahlen rechnen, etwa {{numbers}}, und die Annahmen ansehen.",
+  "pilot.curve.lost":
+    "{{share}} % derer, die beginnen, sind nicht im Test (Spalte „Im Test“): Sie brechen ab oder werden aus einem technischen Grund oder nach einer erklärten Regel ausgeschlossen, wie unten angenommen.",
+  "pilot.curve.range": ", möglich sind {{low}} bis {{high}}",
 };
