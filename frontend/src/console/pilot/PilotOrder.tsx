@@ -1,8 +1,10 @@
 /** Order a pilot: simulated people, or the power of the test, from what is assumed. */
 import { Button, Checkbox, NumberInput, Select, TextInput, Title } from "@mantine/core";
 import { ApiError, type Problem } from "@shared/api/request";
+import { duration, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
+import { seconds } from "@shared/units";
 import { useMutation } from "@tanstack/react-query";
 import { type JSX, type ReactNode, type RefObject, useRef, useState } from "react";
 import { Link } from "wouter";
@@ -19,17 +21,40 @@ interface PilotOrderProps {
   readonly studyKey: string;
   readonly defaults: PilotDefaults;
   readonly onStarted: (pilot: Pilot) => unknown;
+  readonly onShow: (id: string) => void;
 }
 
 const PEOPLE = [1, 1000] as const;
 const SETS = [50, 10_000] as const;
 const LARGEST_SEED = 2 ** 31 - 1;
+const SEEDS = [0, LARGEST_SEED] as const;
+const TARGETS = [0.01, 0.99] as const;
 const AVATARS = ["physics", "physics_without_fingers", "delayed_copy"] as const;
 
 const isWithin = (value: number | string, [low, high]: readonly [number, number]): boolean =>
   typeof value === "number" && Number.isInteger(value) && value >= low && value <= high;
 
-export function PilotOrder({ studyKey, defaults, onStarted }: PilotOrderProps): JSX.Element {
+/** A rough time in whole minutes, or in seconds below one. */
+const roughly = (time_s: number): string =>
+  duration(seconds(time_s < 60 ? Math.ceil(time_s) : 60 * Math.round(time_s / 60)));
+
+/** Says which whole numbers are valid if a field has none of them; nothing is changed silently. */
+function useWholeError(): (
+  value: number | string,
+  range: readonly [number, number],
+) => string | undefined {
+  const { t, language } = useTexts();
+  return (value, range) => {
+    const [low, high] = range.map((end) => number(end, language, 0));
+    return isWithin(value, range)
+      ? undefined
+      : t("pilot.range.whole", { low: low ?? "", high: high ?? "" });
+  };
+}
+
+export function PilotOrder(props: PilotOrderProps): JSX.Element {
+  const { studyKey, defaults, onStarted, onShow } = props;
+  const { t } = useTexts();
   const [assumed, setAssumed] = useState(defaults.assumptions ?? "");
   const [isOpen, setOpen] = useState(false);
   const field = useRef<YamlText | null>(null);
@@ -39,6 +64,7 @@ export function PilotOrder({ studyKey, defaults, onStarted }: PilotOrderProps): 
   });
   const assumptions = assumed.trim() === "" ? null : assumed;
   const problems = problemsOf(start.error);
+  const same = sameAs(start.error);
   const shared = { defaults, assumptions, isPending: start.isPending, onStart: start.mutate };
   const insert = (text: string) => {
     setOpen(true);
@@ -60,10 +86,35 @@ export function PilotOrder({ studyKey, defaults, onStarted }: PilotOrderProps): 
         onText={setAssumed}
         onExample={insert}
       />
-      {start.isError && problems.length === 0 && <Failure error={start.error} />}
+      {same !== null && (
+        <Notice
+          tone="info"
+          actions={
+            <Button
+              size="compact-sm"
+              variant="default"
+              onClick={() => {
+                start.reset();
+                onShow(same);
+              }}
+            >
+              {t("pilot.same.show")}
+            </Button>
+          }
+        >
+          {t("pilot.same")}
+        </Notice>
+      )}
+      {start.isError && same === null && problems.length === 0 && <Failure error={start.error} />}
     </div>
   );
 }
+
+/** The pilot with the same order, because of which another one was refused. */
+const sameAs = (refusal: unknown): string | null =>
+  refusal instanceof ApiError && refusal.code === "conflict" && typeof refusal.value === "string"
+    ? refusal.value
+    : null;
 
 const NO_PROBLEMS: readonly Problem[] = [];
 
@@ -83,11 +134,12 @@ interface FormProps {
 
 function CohortForm({ defaults, assumptions, isPending, onStart }: FormProps): JSX.Element {
   const { t } = useTexts();
+  const wholeError = useWholeError();
   const [people, setPeople] = useState<number | string>(defaults.participants);
   const [seed, setSeed] = useState<number | string>(1);
   const [avatar, setAvatar] = useState<(typeof AVATARS)[number]>(defaults.avatar);
   const [withPower, setWithPower] = useState(true);
-  const isValid = isWithin(people, PEOPLE) && isWithin(seed, [0, LARGEST_SEED]);
+  const isValid = isWithin(people, PEOPLE) && isWithin(seed, SEEDS);
   return (
     <OrderForm
       title={t("pilot.cohort")}
@@ -109,6 +161,8 @@ function CohortForm({ defaults, assumptions, isPending, onStart }: FormProps): J
           label={t("pilot.cohort.n")}
           min={PEOPLE[0]}
           max={PEOPLE[1]}
+          clampBehavior="none"
+          error={wholeError(people, PEOPLE)}
           allowDecimal={false}
           value={people}
           onChange={setPeople}
@@ -128,6 +182,13 @@ function CohortForm({ defaults, assumptions, isPending, onStart }: FormProps): J
         disabled={assumptions === null}
         onChange={({ currentTarget }) => setWithPower(currentTarget.checked)}
       />
+      {isWithin(people, PEOPLE) && (
+        <p className={classes.soft}>
+          {t("pilot.estimate", {
+            time: roughly(Number(people) * (defaults.person_s[avatar] ?? 0)),
+          })}
+        </p>
+      )}
     </OrderForm>
   );
 }
@@ -139,17 +200,18 @@ interface PowerFormProps extends FormProps {
 
 function PowerForm(props: PowerFormProps): JSX.Element {
   const { defaults, assumptions, isPending, onStart, onExample, onWrite } = props;
-  const { t } = useTexts();
+  const { t, language } = useTexts();
+  const wholeError = useWholeError();
   const [text, setText] = useState(defaults.numbers.join(", "));
   const [seed, setSeed] = useState<number | string>(1);
   const [sets, setSets] = useState<number | string>(1000);
   const [target, setTarget] = useState<number | string>(0.8);
   const numbers = numbersIn(text);
   const most = defaults.most_participants;
-  const isTarget = typeof target === "number" && target > 0 && target < 1;
+  const isTarget = typeof target === "number" && target >= TARGETS[0] && target <= TARGETS[1];
   const isValid =
     numbers !== null &&
-    isWithin(seed, [0, LARGEST_SEED]) &&
+    isWithin(seed, SEEDS) &&
     isWithin(sets, SETS) &&
     isTarget &&
     assumptions !== null;
@@ -190,6 +252,8 @@ function PowerForm(props: PowerFormProps): JSX.Element {
           min={SETS[0]}
           max={SETS[1]}
           step={50}
+          clampBehavior="none"
+          error={wholeError(sets, SETS)}
           allowDecimal={false}
           value={sets}
           onChange={setSets}
@@ -197,10 +261,12 @@ function PowerForm(props: PowerFormProps): JSX.Element {
         <Seed value={seed} onChange={setSeed} />
         <NumberInput
           label={t("pilot.power.target")}
-          min={0.01}
-          max={0.99}
+          min={TARGETS[0]}
+          max={TARGETS[1]}
           step={0.05}
-          decimalScale={2}
+          clampBehavior="none"
+          decimalSeparator={language === "de" ? "," : "."}
+          error={isTarget ? undefined : t("pilot.range.share")}
           value={target}
           onChange={setTarget}
         />
@@ -283,12 +349,15 @@ interface SeedProps {
 
 function Seed({ value, onChange }: SeedProps): JSX.Element {
   const { t } = useTexts();
+  const wholeError = useWholeError();
   return (
     <NumberInput
       label={t("pilot.seed")}
       title={t("pilot.seed.hint")}
       min={0}
       max={LARGEST_SEED}
+      clampBehavior="none"
+      error={wholeError(value, SEEDS)}
       allowDecimal={false}
       value={value}
       onChange={onChange}

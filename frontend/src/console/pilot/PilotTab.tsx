@@ -89,6 +89,10 @@ export function PilotTab({ study }: { readonly study: StudyDetail }): JSX.Elemen
                 begun.current = pilot.id;
                 return put(pilot);
               }}
+              onShow={(same) => {
+                begun.current = same;
+                show(same);
+              }}
             />
           )}
         </Loaded>
