@@ -230,7 +230,7 @@ def _broken() -> Iterator[Figure]:
     with tempfile.TemporaryDirectory() as folder:
         room = Path(folder) / "room.yaml"
         room.write_text(_ROOM, encoding="utf-8")
-        checked = carry_out_check("two-latencies-hand", room, lambda _: None)
+        checked = carry_out_check("two-latencies-hand", str(room), lambda _: None)
         found += [one.kind for one in checked.findings] == ["scene_without_path"]
     number = len(_FAULTS) + 1
     yield Figure("broken", "faults found and named", found, "studies", "at least", number)
