@@ -1,8 +1,9 @@
 """Request and response models of pilots; all that they describe is simulated."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -24,6 +25,8 @@ FindingKind = Literal[
     "scene_without_path",
     "never_significant",
 ]
+MANY: Final = 0.25
+"""The share of people without any task from which on that is a finding."""
 Seed = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
 Assumed = Annotated[str, Field(min_length=1, max_length=100_000, description="YAML")]
 Counted = Annotated[int, Field(strict=True, ge=FEWEST_PARTICIPANTS, le=MOST_PARTICIPANTS)]
@@ -157,6 +160,22 @@ class WithoutTask(BaseModel):
     people: int
     without: int
     is_many: bool
+
+
+def without_task(phases: Sequence[PhaseFigures]) -> list[WithoutTask]:
+    """Return the limbs and latencies at which somebody completes no task, the most people first."""
+    found = [
+        WithoutTask(
+            limb=one.limb,
+            latency_ms=one.latency_ms,
+            people=one.people,
+            without=round(one.at_floor * one.people),
+            is_many=one.at_floor >= MANY,
+        )
+        for one in phases
+        if one.at_floor > 0.0
+    ]
+    return sorted(found, key=lambda one: -one.without / one.people)
 
 
 class ChangeView(BaseModel):

@@ -35,8 +35,8 @@ from app.features.results.pilot.schemas import (
     PilotProgress,
     PilotView,
     State,
+    without_task,
 )
-from app.features.results.pilot.without_task import without_task
 from app.models import PilotRow, StudyVersion, new_id
 from app.platform.access import Caller, is_blind
 from app.platform.config_problems import invalid_config

@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from app.features.results.pilot.schemas import PhaseFigures
+from app.features.results.pilot.schemas import PhaseFigures, without_task
 from app.features.results.pilot.simulation.check import Reached
 from app.features.results.pilot.simulation.form_texts import Rehearsed, ethics_texts, rounded
-from app.features.results.pilot.without_task import without_task
 from app.texts import LANGUAGES
 
 REACHED = Reached("hand", "left", "tall", 1.869, 200.0, (), 3.0)

@@ -5,6 +5,7 @@ loads the physics.
 """
 
 from app.features.results.pilot.order import PilotError
+from app.features.results.pilot.schemas import without_task
 from app.features.results.pilot.simulation.check import Checked, Finding, Reached, check_study
 from app.features.results.pilot.simulation.cohort import (
     Cohort,
@@ -50,7 +51,6 @@ from app.features.results.pilot.simulation.report import (
     report_on,
 )
 from app.features.results.pilot.simulation.simulated_study import SimulatedStudy
-from app.features.results.pilot.without_task import without_task
 from app.simulated_people.visits import AvatarKind
 
 __all__ = [

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from scipy import stats
 
-from app.features.results.pilot.schemas import PhaseFigures
+from app.features.results.pilot.schemas import PhaseFigures, without_task
 from app.features.results.pilot.simulation.check import Checked, Finding, Reached
 from app.features.results.pilot.simulation.cohort import Cohort
 from app.features.results.pilot.simulation.form_texts import (
@@ -22,7 +22,6 @@ from app.features.results.pilot.simulation.recorded_reaching import (
     reaching_assumptions,
     reaching_data,
 )
-from app.features.results.pilot.without_task import without_task
 from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
 from app.science.statistics import FloatArray
 from app.simulated_people.visits import AvatarKind, PhaseOutcome, Visit, avatar_kind_of
