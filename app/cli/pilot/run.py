@@ -64,11 +64,13 @@ def carry_out_cohort(
 def study_of(cohort: Cohort, given: str | None) -> StudyFile:
     """Read the study of a merged cohort; raises ValueError if it has changed since, OSError."""
     key = str(cohort.header["study"])
+    unknown = f"the cohort's study {key!r} is no shipped one: give its file with --study"
     if given is None and not is_shipped(key):
-        raise ValueError(
-            f"the cohort's study {key!r} is no shipped one: give its file with --study"
-        )
+        raise ValueError(unknown)
     file = read_study(given or key)
+    if given is None and file.study.content_hash != cohort.header["study_sha256"]:
+        # Another study of the same key, or an earlier version of the shipped one.
+        raise ValueError(f"{unknown} (SHA-256 {cohort.header['study_sha256']})")
     if file.study.content_hash != cohort.header["study_sha256"]:
         raise ValueError(
             f"{file.path} is not the study that was simulated (SHA-256 "
