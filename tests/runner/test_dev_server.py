@@ -62,7 +62,7 @@ def test_the_dev_server_passes_requests_on(dev_server: str) -> None:
 def test_every_page_is_served_with_its_scripts(dev_server: str, path: str) -> None:
     """Every script and icon that a page names is served relative to the page's URL."""
     page = httpx2.get(f"{dev_server}{path}", timeout=30.0)
-    named = re.findall(r'(?:src|href)="([^"]+\.(?:tsx|svg))"', page.text)
+    named = re.findall(r'(?:src|href)="([^"]+\.(?:tsx?|svg))"', page.text)
     assert len(named) >= 2
     for name in named:
         answer = httpx2.get(page.url.join(name), timeout=60.0)
