@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from app.features.results.exports.writing.shortest import shortest_doubles
+from app.features.results.exports.writing.samples import shortest_doubles
 
 
 def _any_singles(count: int) -> NDArray[np.float32]:
