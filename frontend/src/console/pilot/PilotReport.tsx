@@ -99,6 +99,11 @@ function Findings({ figures }: FiguresProps): JSX.Element {
   const { t, language } = useTexts();
   const limb = useLimbs();
   const many = figures.without_task.filter(({ is_many }) => is_many);
+  const remedy = t(
+    figures.avatar === "delayed_copy"
+      ? "pilot.findings.idle.remedy_copy"
+      : "pilot.findings.idle.remedy_physics",
+  );
   return (
     <Card title={t("pilot.findings")} note={t("pilot.findings.scope")}>
       {many.length > 0 && (
@@ -108,7 +113,7 @@ function Findings({ figures }: FiguresProps): JSX.Element {
               key={`${one.limb} ${one.latency_ms}`}
               tone="warn"
               title={t("pilot.findings.idle", idleWords(one, limb, language))}
-              remedy={t("pilot.findings.idle.remedy")}
+              remedy={remedy}
             >
               {t("pilot.findings.idle.words", idleWords(one, limb, language))}
             </Notice>

@@ -100,7 +100,9 @@ export const pilotEn = {
   "pilot.findings.idle": "Many complete no task: {{limb}}, {{latency}} ms",
   "pilot.findings.idle.words":
     "{{without}} of {{people}} simulated people complete no task with the {{limb}} at {{latency}} ms.",
-  "pilot.findings.idle.remedy":
+  "pilot.findings.idle.remedy_copy":
+    "No edge stops a delayed copy, so the phase is too short or the task too hard, unless it is the latency: simulated people do not get used to one.",
+  "pilot.findings.idle.remedy_physics":
     "Simulated people do not get used to a latency, and with physics they are caught at solid edges, so real people may well do better. Simulate the delayed copy, too: if many complete nothing there either, the phase is too short or the task too hard.",
   "pilot.facts.idle": "Complete no task in a phase",
   "pilot.facts.idle.none": "nobody",
@@ -307,7 +309,9 @@ export const pilotDe: Readonly<Record<keyof typeof pilotEn, string>> = {
   "pilot.findings.idle": "Viele schaffen keine Aufgabe: {{limb}}, {{latency}} ms",
   "pilot.findings.idle.words":
     "{{without}} von {{people}} simulierten Menschen schaffen bei {{latency}} ms keine Aufgabe ({{limb}}).",
-  "pilot.findings.idle.remedy":
+  "pilot.findings.idle.remedy_copy":
+    "Eine verzögerte Kopie hält keine Kante auf. Die Phase ist also zu kurz oder die Aufgabe zu schwer, oder es liegt an der Latenz: Simulierte Menschen gewöhnen sich an keine.",
+  "pilot.findings.idle.remedy_physics":
     "Simulierte Menschen gewöhnen sich nicht an eine Latenz und bleiben mit Physik an festen Kanten hängen, echten kann es also besser gehen. Simulieren Sie auch die verzögerte Kopie: Schaffen viele auch dort nichts, ist die Phase zu kurz oder die Aufgabe zu schwer.",
   "pilot.facts.idle": "Keine Aufgabe in einer Phase",
   "pilot.facts.idle.none": "niemand",
