@@ -162,14 +162,23 @@ def test_samples_of_an_export_need_a_stature(tmp_path: Path) -> None:
 
 
 def test_one_code_in_several_folders_is_said_to_be_taken_as_one_person(lab: Path) -> None:
-    """Files of one name in two folders are one person's, which the notices say with the folders."""
-    twin = lab / "second" / "0.csv"
-    twin.parent.mkdir()
-    shutil.copy(lab / "1.csv", twin)
-    asked = ("fit", lab / "0.csv", twin, lab / "2.csv", "--out", lab / "codes.npz")
+    """A person's folder of the same code in two studies is one person, as the notices say."""
+    studies = [lab / name / "7" / "S001" / "trackers" / "hand.csv" for name in ("first", "second")]
+    for at, file in enumerate(studies):
+        file.parent.mkdir(parents=True)
+        shutil.copy(lab / f"{at}.csv", file)
+    asked = ("fit", *studies, lab / "2.csv", "--out", lab / "codes.npz")
     found = _COMMAND.figures(*asked)
     (said,) = (one for one in found["notices"] if "is taken as one" in one)
-    assert said.startswith("person '0' is in 2 folders (")
-    assert "/second)" in said
+    assert said.startswith("person '7' is in 2 folders (first/7, second/7)")
     told = _COMMAND.run(*asked).stdout
-    assert "2 people known only by a file or a folder, with the code: '0', '2'" in told
+    assert "2 people known only by a file or a folder, with the code: '2', '7'" in told
+
+
+def test_files_of_one_name_in_two_folders_are_two_people(lab: Path) -> None:
+    """What tells the files apart tells the people apart, unless the list says otherwise."""
+    twin = lab / "again" / "0.csv"
+    twin.parent.mkdir()
+    shutil.copy(lab / "1.csv", twin)
+    asked = ("fit", lab / "0.csv", twin, lab / "2.csv", "--out", lab / "twins.npz")
+    assert len(_COMMAND.figures(*asked)["levels"]) == 3

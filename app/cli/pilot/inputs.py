@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.features.results.pilot.example import example_assumptions
+from app.features.results.pilot import example_assumptions
 from app.features.results.pilot.simulation import AvatarKind, PilotStudy, Sharing
 from app.protocol import (
     ConfigError,

@@ -5,6 +5,7 @@ waits while somebody is in a session. What it computes is in `simulation`, which
 uses as well; the server does not load that.
 """
 
+from app.features.results.pilot.example import example_assumptions
 from app.features.results.pilot.pilot_queue import PilotQueue
 
-__all__ = ["PilotQueue"]
+__all__ = ["PilotQueue", "example_assumptions"]
