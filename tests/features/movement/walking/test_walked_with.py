@@ -244,8 +244,10 @@ def test_a_scene_that_changed_or_is_gone_stops_a_resumed_fit(walking_lab: Lab) -
 
 def test_a_set_that_was_stored_earlier_is_read_as_it_was(walking_lab: Lab) -> None:
     """A stored table whose column `scene` did not count then is fitted as before."""
-    add_hall(walking_lab, "hall-c")
-    walks = ok(upload_tracks(walking_lab, with_columns(scene=lambda *_: "hall-c", load_kg=load_of)))
+    add_hall(walking_lab, "hall-of-old")
+    walks = ok(
+        upload_tracks(walking_lab, with_columns(scene=lambda *_: "hall-of-old", load_kg=load_of))
+    )
     with walking_lab.database.writing() as db:
         row = db.get(WalkSetRow, walks["id"])
         assert row is not None
