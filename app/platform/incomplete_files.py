@@ -17,7 +17,7 @@ from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import IO, Literal
+from typing import IO, Any, Literal
 
 from app.platform.folders import BEGINNING, home_of
 from app.settings import Settings
@@ -86,7 +86,7 @@ class Notes:
             "study_key": study_key,
         }
         with note.open("x", encoding="utf-8") as file:
-            _lock(file)
+            lock_file(file)
             json.dump(words, file)
             file.flush()
             os.fsync(file.fileno())
@@ -178,7 +178,7 @@ def _remove(one: IncompleteFile) -> bool:
 def _read(note: Path) -> IncompleteFile | None:
     try:
         with note.open("r+", encoding="utf-8") as file:
-            going_on = not _lock(file, wait=False)
+            going_on = not lock_file(file, wait=False)
             words = json.load(file)
             return IncompleteFile(
                 kind=words["kind"],
@@ -193,8 +193,11 @@ def _read(note: Path) -> IncompleteFile | None:
         return None
 
 
-def _lock(file: IO[str], *, wait: bool = True) -> bool:
-    """Lock a note until the process ends; return whether it succeeded, True without file locks."""
+def lock_file(file: IO[Any], *, wait: bool = True) -> bool:
+    """Lock a file until it is closed or the process ends; return whether that succeeded.
+
+    Where there are no file locks it returns True. `wait`: until nobody else has it.
+    """
     try:
         import fcntl
     except ImportError:

@@ -14,6 +14,7 @@ from typing import IO, Annotated, Any, Final, Literal, NoReturn, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
+from app.platform.incomplete_files import lock_file
 from app.science.simulation import Build
 from app.simulated_people.visits import AvatarKind, PhaseOutcome, Visit
 
@@ -132,7 +133,7 @@ def open_record(path: Path | None, header: Header, own: Sequence[int]) -> Iterat
         begun.write_text(line_of(header), encoding="utf-8")
         begun.replace(path)
     with path.open("r+b") as file:
-        if not _lock(file):
+        if not lock_file(file, wait=False):
             raise ValueError(f"another process is writing {path}; give each a file of its own")
         found = read_record(path)
         require_same(header, found.header, path)
@@ -188,24 +189,6 @@ def plain(visit: Visit) -> dict[str, Any]:
 def line_of(one: Mapping[str, Any]) -> str:
     """Return a line of a record."""
     return f"{json.dumps(one)}\n"
-
-
-def _lock(file: IO[bytes]) -> bool:
-    """Lock a file until it is closed; return whether nobody else has.
-
-    True as well where there are no locks of files.
-    """
-    try:
-        import fcntl
-    except ImportError:
-        return True
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system without locks
-        return True
-    return True
 
 
 def _checked(path: Path, at: int, parse: Callable[[], Parsed]) -> Parsed:

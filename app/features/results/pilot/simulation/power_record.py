@@ -94,6 +94,8 @@ def _read(path: Path) -> tuple[Record, int]:
             )
         known = isinstance(header, dict) and header.get("format") == FORMAT
         results = dict(_chunks(lines[1:])) if known else {}
+    except json.JSONDecodeError as error:
+        raise ValueError(f"{path} is no record of a pilot; give a file that --out wrote") from error
     except ValueError as error:
         raise ValueError(f"{path} is no record of a pilot's power: {error}") from error
     except (KeyError, TypeError) as error:
